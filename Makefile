@@ -1,0 +1,102 @@
+# halflight. make              the tool and the libraries, in build/$(config)
+#            make run          install what is missing, build, draw, report
+#            make test         install what is missing, build, run all suites
+#            make check        include arrows, undefined symbols, headers alone
+# config=debug|release|sanitize|coverage
+config ?= release
+CC ?= gcc
+AR ?= ar
+PYTHON ?= python3
+B := build/$(config)
+GEN := build/gen
+
+# -ffp-contract=off: a*b+c is two roundings everywhere, so that core's numbers
+# are the same on every compiler; errno and traps are never read.
+STD := -std=c99 -pedantic -Wall -Wextra -Wconversion -Werror
+CFLAGS_release := -O3 -fno-math-errno -fno-trapping-math
+CFLAGS_debug := -O0 -g
+CFLAGS_sanitize := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
+CFLAGS_coverage := -O0 -g --coverage
+LDFLAGS_sanitize := -fsanitize=address,undefined
+LDFLAGS_coverage := --coverage
+ALL_CFLAGS = $(STD) -ffp-contract=off $(CFLAGS_$(config)) -I. -I$(GEN) $(CFLAGS)
+ALL_LDFLAGS = $(LDFLAGS_$(config)) $(LDFLAGS)
+# The tool and the tests read files, clocks and threads: POSIX, not core.
+HOST_CFLAGS := -D_POSIX_C_SOURCE=200809L -pthread
+HOST_LIBS := -lassimp -lcjson -lpng -ljpeg -pthread -lm
+VULKAN_LIBS := -lvulkan
+
+lib = $(B)/lib$(1).a
+objs = $(patsubst %.c,$(B)/obj/%.o,$(wildcard $(1)))
+
+HAL := $(call objs,hal/*.c) $(call objs,core/*.c)
+NULLB := $(call objs,platforms/null/*.c)
+VULKAN := $(call objs,platforms/vulkan/*.c) $(B)/obj/gen/hl_spirv.o
+HOST := $(call objs,platforms/host/*.c)
+REFERENCE := $(call objs,platforms/reference/*.c)
+CLI_LIB := $(filter-out $(B)/obj/platforms/cli/main.o,$(call objs,platforms/cli/*.c))
+LIST := $(B)/obj/platforms/platforms.o
+
+LIBS := $(call lib,halflight) $(call lib,halflight-null) $(call lib,halflight-vulkan)
+TOOL_LIBS := $(call lib,halflight-cli) $(call lib,halflight-host) $(call lib,halflight-reference) \
+  $(call lib,halflight-list) $(call lib,halflight-vulkan) $(call lib,halflight-null) $(call lib,halflight)
+
+.PHONY: all libs tool run test tests check deps clean bench
+all: tool libs
+libs: $(LIBS)
+tool: $(B)/halflight
+
+$(call lib,halflight): $(HAL)
+$(call lib,halflight-null): $(NULLB)
+$(call lib,halflight-vulkan): $(VULKAN)
+$(call lib,halflight-host): $(HOST)
+$(call lib,halflight-reference): $(REFERENCE)
+$(call lib,halflight-cli): $(CLI_LIB)
+$(call lib,halflight-list): $(LIST)
+%.a:
+	@mkdir -p $(@D); rm -f $@
+	$(AR) rcs $@ $^
+
+$(B)/halflight: $(B)/obj/platforms/cli/main.o $(TOOL_LIBS)
+	$(CC) $(ALL_LDFLAGS) -o $@ $^ $(VULKAN_LIBS) $(HOST_LIBS)
+
+$(B)/obj/platforms/host/%.o $(B)/obj/platforms/cli/%.o $(B)/obj/platforms/reference/%.o $(B)/obj/tests/%.o: EXTRA := $(HOST_CFLAGS)
+$(B)/obj/%.o: %.c
+	@mkdir -p $(@D)
+	$(CC) $(ALL_CFLAGS) $(EXTRA) -MMD -MP -c -o $@ $<
+$(B)/obj/gen/%.o: $(GEN)/%.c
+	@mkdir -p $(@D)
+	$(CC) $(ALL_CFLAGS) -MMD -MP -c -o $@ $<
+
+# Shaders: one SPIR-V blob a row of shaders/variants.def, embedded as C.
+$(GEN)/hl_spirv.c: shaders/embed.sh shaders/variants.def $(wildcard shaders/*.vert shaders/*.frag shaders/*.glsl shaders/shared/*.h)
+	@mkdir -p $(GEN)
+	sh shaders/embed.sh spirv $@
+$(VULKAN): | $(GEN)/hl_spirv.c
+
+# Tests: every tests/test_*.c is a cmocka program over all libraries.
+TESTS := $(patsubst tests/%.c,$(B)/tests/%,$(wildcard tests/test_*.c)) $(patsubst tests/%.c,$(B)/tests/%,$(wildcard tests/embed.c))
+TEST_LIB := $(filter-out $(B)/obj/tests/test_% $(B)/obj/tests/embed.o,$(call objs,tests/*.c))
+tests: $(TESTS)
+$(B)/tests/%: $(B)/obj/tests/%.o $(TEST_LIB) $(TOOL_LIBS)
+	@mkdir -p $(@D)
+	$(CC) $(ALL_LDFLAGS) -o $@ $^ -lcmocka $(VULKAN_LIBS) $(HOST_LIBS) -ldl
+$(B)/tests/embed: $(B)/obj/tests/embed.o $(LIBS)
+	@mkdir -p $(@D)
+	$(CC) $(ALL_LDFLAGS) -o $@ $< $(call lib,halflight-vulkan) $(call lib,halflight) $(VULKAN_LIBS) -lm
+
+deps:
+	@sh .ci/deps
+run: deps
+	@$(MAKE) --no-print-directory all
+	@sh .ci/demo $(B)/halflight build/demo
+test: deps
+	@$(MAKE) --no-print-directory all tests
+	@sh tests/run.sh $(B)
+check: all
+	@sh tests/check.sh $(B)
+clean:
+	rm -rf build
+
+-include $(shell find $(B) -name '*.d' 2>/dev/null)
+.SECONDARY:

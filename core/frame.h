@@ -1,0 +1,78 @@
+/* SPDX-License-Identifier: Zlib */
+#ifndef HL_FRAME_H
+#define HL_FRAME_H
+/* Runs a plan on a device. A renderer owns the plan's targets and programs;
+ * an engine's meshes and textures stay its own. Order of use: hl_plan_make,
+ * hl_renderer_create, then for each frame hl_frame_draw and hl_submit. */
+#include "core/plan.h"
+#include "core/scene.h"
+
+struct hl_renderer;
+
+struct hl_renderer_desc {
+    const struct hl_plan *plan;
+    const struct hl_surface *surfaces;  /* copied, but for own_material code */
+    uint32_t n_surfaces;
+    uint32_t max_items;      /* required, > 0                                */
+    uint32_t max_lights;     /* of a frame; 0 = 1024                         */
+    size_t frame_bytes;      /* uniform data of a frame; 0: by the two above */
+    size_t list_bytes;       /* light lists of a frame; 0: likewise          */
+    bool readback;           /* targets can be read by hl_tex_read           */
+};
+
+/* Host memory a renderer needs; 0 when the desc is invalid. */
+size_t hl_renderer_bytes(const struct hl_renderer_desc *);
+
+/* `memory`: hl_renderer_bytes(desc) bytes aligned for any type, the caller's,
+ * in use until hl_renderer_destroy. Creates all targets and programs, so
+ * that no frame compiles. On failure everything made is destroyed again. */
+enum hl_result hl_renderer_create(struct hl_renderer **out,
+                                  struct hl_device *device,
+                                  const struct hl_renderer_desc *desc,
+                                  void *memory);
+void hl_renderer_destroy(struct hl_renderer **);
+
+struct hl_frame_stats {
+    uint32_t items, items_culled;      /* opaque and blended                 */
+    uint32_t lights, lights_culled;    /* lights: those drawn                */
+    uint32_t draws, blends;            /* blends: draws that blend           */
+    uint32_t light_refs;               /* entries of all light lists         */
+    float light_peak;                  /* bound of summed light, inferred    */
+};
+
+/* Record the frame's passes; the caller submits. Lights and camera are
+ * checked: HL_ERR_INVALID names the first bad field in the log and draws
+ * nothing. HL_ERR_LIMIT: a capacity of the desc is too small. Runs of up to
+ * two submitted and unfinished frames are allowed. With plan.tile_depth the
+ * call submits and waits for the geometry pass. stats may be NULL. */
+enum hl_result hl_frame_draw(struct hl_renderer *, const struct hl_frame *,
+                             struct hl_frame_stats *stats);
+
+/* The finished frame: linear, one sample a pixel. */
+hl_tex hl_renderer_output(const struct hl_renderer *);
+/* {0} where the plan has no such target. */
+hl_tex hl_renderer_target(const struct hl_renderer *, enum hl_role);
+
+/* Pictures of the inside, drawn for the frame last drawn (which must be
+ * given again unchanged) and read back. Programs are made on first use. */
+enum hl_inspect {
+    HL_INSPECT_IDS,          /* uint32 a frame pixel: (item + 1) << 16 |
+                              * normal group; 0 = background                 */
+    HL_INSPECT_LIGHTS,       /* float a pixel of the shading pass: light
+                              * evaluations (frame pixels, or L-buffer
+                              * texels for the inferred pipeline)            */
+    HL_INSPECT_REJECTS       /* uint8 a frame pixel: rejected DSF taps + 1,
+                              * 0 = background; inferred pipeline only       */
+};
+/* Size of the picture; bytes = width * height * (4, 4, 1). */
+void hl_inspect_size(const struct hl_renderer *, enum hl_inspect,
+                     uint32_t *width, uint32_t *height);
+enum hl_result hl_frame_inspect(struct hl_renderer *, const struct hl_frame *,
+                                enum hl_inspect, void *out, size_t bytes);
+
+/* Needs of a frame: counts, mean lights a pixel and an object, kinds of
+ * light, exponents, the light's peak. Sizes and choices are the caller's and
+ * left as they are. */
+void hl_needs_measure(struct hl_needs *needs, const struct hl_frame *frame,
+                      const struct hl_surface *surfaces, float aspect);
+#endif

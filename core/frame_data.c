@@ -1,0 +1,340 @@
+/* SPDX-License-Identifier: Zlib */
+/* A frame's data on the host: checks, culling, uniform blocks. */
+#include <string.h>
+#include "core/renderer.h"
+#include "core/vec.h"
+#include "shaders/shared/shade.h"
+#include "hal/backend.h"
+#include "hal/text.h"
+
+/* ---- arena -------------------------------------------------------------- */
+
+static uint8_t *arena_take(struct hl_arena *a, uint32_t bytes, uint32_t *at)
+{
+    uint32_t start = (a->used + a->align - 1) / a->align * a->align;
+    *at = 0;
+    if (start > a->size || bytes > a->size - start) {
+        a->full = true;
+        return NULL;
+    }
+    a->used = start + bytes;
+    *at = start;
+    return a->bytes + start;
+}
+
+uint32_t hl_arena_put(struct hl_arena *a, const void *data, uint32_t bytes)
+{
+    uint32_t at;
+    uint8_t *p = arena_take(a, bytes, &at);
+    if (p)
+        memcpy(p, data, bytes);
+    return at;
+}
+
+static enum hl_result flush_one(struct hl_renderer *r, struct hl_arena *a,
+                                hl_buf buf)
+{
+    if (a->used == a->flushed || buf.id == 0)
+        return HL_OK;
+    enum hl_result e = hl_buf_write(r->device, buf, a->flushed,
+                                    a->bytes + a->flushed,
+                                    a->used - a->flushed);
+    a->flushed = a->used;
+    return e;
+}
+
+enum hl_result hl_frame_flush(struct hl_renderer *r)
+{
+    if (r->arena.full || r->lists.full) {
+        hl_bk_log(r->device, HL_LOG_ERROR, HL_MSG_LIMIT,
+                  r->arena.full ? "hl_renderer_desc.frame_bytes"
+                                : "hl_renderer_desc.list_bytes",
+                  ": too small for this frame", NULL);
+        return HL_ERR_LIMIT;
+    }
+    enum hl_result e = flush_one(r, &r->arena, r->uniform[r->frame]);
+    return e == HL_OK ? flush_one(r, &r->lists, r->list[r->frame]) : e;
+}
+
+/* ---- checks ------------------------------------------------------------- */
+
+static enum hl_result refuse(struct hl_renderer *r, const char *what,
+                             uint32_t index, const char *why)
+{
+    char line[160];
+    struct hl_text t = hl_text_begin(line, sizeof line);
+    hl_text_str(&t, what);
+    hl_text_str(&t, " ");
+    hl_text_uint(&t, index);
+    hl_text_str(&t, ": ");
+    hl_bk_log(r->device, HL_LOG_ERROR, HL_MSG_ARGUMENT, line, why, NULL);
+    return HL_ERR_INVALID;
+}
+
+static bool finite_all(const float *v, int n)
+{
+    for (int i = 0; i < n; i++)
+        if (v[i] - v[i] != 0)
+            return false;
+    return true;
+}
+
+static enum hl_result check_item(struct hl_renderer *r,
+                                 const struct hl_item *it, uint32_t i)
+{
+    if (it->surface >= r->n_surfaces)
+        return refuse(r, "hl_frame.items", i, "surface is not one");
+    const struct hl_surface *s = &r->surfaces[it->surface];
+    if (!it->material && !s->own_material)
+        return refuse(r, "hl_frame.items", i, "material is NULL");
+    if (s->own_material && (!it->material_block || !it->material_bytes))
+        return refuse(r, "hl_frame.items", i, "material_block is NULL");
+    if (!finite_all(it->world, 16) || !finite_all(it->bounds_min, 3) ||
+        !finite_all(it->bounds_max, 3))
+        return refuse(r, "hl_frame.items", i, "world or bounds not finite");
+    return HL_OK;
+}
+
+static enum hl_result check_frame(struct hl_renderer *r,
+                                  const struct hl_frame *f)
+{
+    const struct hl_camera *c = &f->camera;
+    if ((f->n_items && !f->items) || (f->n_lights && !f->lights))
+        return refuse(r, "hl_frame", 0, "items or lights is NULL");
+    if (!finite_all(c->view, 16) || !(c->near > 0) || !(c->far > c->near) ||
+        !(c->tan_half_y > 0) || !finite_all(&c->far, 1))
+        return refuse(r, "hl_frame.camera", 0, "not a camera");
+    if (!finite_all(f->ambient, 3) || !finite_all(f->background, 3))
+        return refuse(r, "hl_frame", 0, "ambient or background not finite");
+    if (f->n_items > r->max_items || f->n_lights > r->max_lights) {
+        refuse(r, "hl_frame", 0, "more items or lights than the desc's max");
+        return HL_ERR_LIMIT;
+    }
+    for (uint32_t i = 0; i < f->n_lights; i++) {
+        const char *why = hl_light_check(&f->lights[i]);
+        if (why)
+            return refuse(r, "hl_frame.lights", i, why);
+    }
+    for (uint32_t i = 0; i < f->n_items; i++)
+        if (check_item(r, &f->items[i], i) != HL_OK)
+            return HL_ERR_INVALID;
+    return HL_OK;
+}
+
+/* ---- blocks ------------------------------------------------------------- */
+
+static hl_vec4 ray(float tan_x, float tan_y, float w, float h)
+{
+    return hl_v4(2 * tan_x / w, -2 * tan_y / h, -tan_x, tan_y);
+}
+
+/* Depth as stored, d = A / z + B, inverted to z = x / (d + y). */
+static void depth_terms(const struct hl_renderer *r,
+                        const struct hl_camera *c, float *x, float *y)
+{
+    double n = (double)c->near, f = (double)c->far;
+    *x = (float)(r->plan.reversed_depth ? n * f / (f - n) : -n * f / (f - n));
+    *y = (float)(r->plan.reversed_depth ? n / (f - n) : -f / (f - n));
+}
+
+static void put_frame_block(struct hl_renderer *r, const struct hl_frame *f)
+{
+    const struct hl_plan *p = &r->plan;
+    const struct hl_camera *c = &f->camera;
+    struct hl_frame_block b;
+    memset(&b, 0, sizeof b);
+    float w = (float)p->width, h = (float)p->height;
+    float lw = p->light_width ? (float)p->light_width : w;
+    float lh = p->light_height ? (float)p->light_height : h;
+    float ty = c->tan_half_y, tx = ty * w / h;
+    b.ray = ray(tx, ty, w, h);
+    b.ray_light = ray(tx, ty, lw, lh);
+    depth_terms(r, c, &b.depth.x, &b.depth.y);
+    b.depth.z = 1.0f / c->far;
+    b.depth.w = c->far;
+    b.ambient = hl_v4(f->ambient[0], f->ambient[1], f->ambient[2],
+                      p->light_scale);
+    b.light_size = hl_v4(lw, lh, lw / w, lh / h);
+    b.dsf = hl_v4(c->far / 65535.0f, p->dsf_k, p->dsf_c, 1.0f);
+    b.dsf_id = hl_v4(1.0f / 65535.0f, 0.5f / 65535.0f, p->dsf_tau, 0);
+    b.misc = hl_v4(p->exponent, (float)r->grid.tile, (float)r->grid.nx, 0);
+    r->frame_offset = hl_arena_put(&r->arena, &b, sizeof b);
+}
+
+/* View to clip: y down, z in 0..w (hal.h's convention). */
+static void projection(const struct hl_renderer *r, const struct hl_camera *c,
+                       float out[16])
+{
+    double n = (double)c->near, f = (double)c->far;
+    bool rev = r->plan.reversed_depth;
+    float tan_x = c->tan_half_y * (float)r->plan.width /
+                  (float)r->plan.height;
+    memset(out, 0, 16 * sizeof *out);
+    out[0] = 1.0f / tan_x;
+    out[5] = -1.0f / c->tan_half_y;
+    out[10] = (float)(rev ? n / (f - n) : -f / (f - n));
+    out[14] = (float)(rev ? n * f / (f - n) : -n * f / (f - n));
+    out[11] = -1.0f;
+}
+
+static void copy4(hl_mat4 *out, const float m[16]) { memcpy(out, m, 64); }
+
+void hl_gather_object(struct hl_renderer *r, const struct hl_frame *f,
+                      struct hl_visible *v)
+{
+    const struct hl_item *it = &f->items[v->item];
+    struct hl_object_block b;
+    float proj[16], mv[16], clip[16], cof[16];
+    projection(r, &f->camera, proj);
+    hl_mul4(mv, f->camera.view, it->world);
+    hl_mul4(clip, proj, mv);
+    hl_cofactor3(cof, mv);
+    copy4(&b.clip, clip);
+    copy4(&b.normal, cof);
+    copy4(&b.tangent, mv);
+    b.ids = hl_v4((float)it->id_base, (float)v->item, (float)v->list_first,
+                  (float)v->list_count);
+    v->object = hl_arena_put(&r->arena, &b, sizeof b);
+}
+
+static void put_material(struct hl_renderer *r, const struct hl_item *it,
+                         struct hl_visible *v)
+{
+    struct hl_material_block b;
+    const struct hl_material *m = it->material;
+    if (r->surfaces[it->surface].own_material &&
+        !r->surfaces[it->surface].blended) {
+        v->material = hl_arena_put(&r->arena, it->material_block,
+                                   it->material_bytes);
+        v->material_bytes = it->material_bytes;
+        return;
+    }
+    hl_vec3 base = hl_load3(m->base);
+    float n = hl_roughness_exponent(m->roughness);
+    float weight = m->no_specular ? 0.0f : 1.0f;
+    hl_vec3 rho = hl_material_albedo(base, m->metallic);
+    hl_vec3 ks = hl_scale3(hl_material_specular(base, m->metallic, n), weight);
+    b.base = hl_v4(base.x, base.y, base.z, m->base[3]);
+    b.params = hl_v4(m->metallic, m->roughness, m->normal_scale,
+                     m->alpha_cutoff);
+    b.emission = hl_v4(m->emission[0], m->emission[1], m->emission[2], weight);
+    b.albedo = hl_v4(rho.x, rho.y, rho.z, m->base[3]);
+    b.specular = hl_v4(ks.x, ks.y, ks.z, n);
+    v->material = hl_arena_put(&r->arena, &b, sizeof b);
+    v->material_bytes = sizeof b;
+}
+
+/* ---- culling ------------------------------------------------------------ */
+
+/* Shell sort, nearest first (or farthest): in place, no recursion, and equal
+ * depths fall back to the item order, so that a frame is deterministic. */
+static bool before(const struct hl_visible *a, const struct hl_visible *b,
+                   bool far_first)
+{
+    if (a->z != b->z)
+        return far_first ? a->z > b->z : a->z < b->z;
+    return a->item < b->item;
+}
+
+static void sort_visible(struct hl_visible *v, uint32_t n, bool far_first)
+{
+    uint32_t gap = 1;
+    while (gap < n / 3)
+        gap = gap * 3 + 1;
+    for (; gap > 0; gap /= 3)
+        for (uint32_t i = gap; i < n; i++) {
+            struct hl_visible x = v[i];
+            uint32_t j = i;
+            for (; j >= gap && before(&x, &v[j - gap], far_first); j -= gap)
+                v[j] = v[j - gap];
+            v[j] = x;
+        }
+}
+
+static uint32_t cull(struct hl_renderer *r, const struct hl_frame *f,
+                     uint32_t n, bool blended)
+{
+    float aspect = (float)r->plan.width / (float)r->plan.height;
+    for (uint32_t i = 0; i < f->n_items; i++) {
+        const struct hl_item *it = &f->items[i];
+        struct hl_visible *v = &r->visible[n];
+        if (r->surfaces[it->surface].blended != blended || it->count == 0)
+            continue;
+        memset(v, 0, sizeof *v);
+        v->item = i;
+        v->box = hl_box_world(it->world, it->bounds_min, it->bounds_max);
+        if (!hl_box_visible(&v->box, &f->camera, aspect, &v->z))
+            continue;
+        if (blended) {
+            /* By the depth of the centre: z is the nearest corner's. */
+            hl_vec3 c = hl_scale3(hl_add3(v->box.min, v->box.max), 0.5f);
+            v->z = -hl_transform_point(f->camera.view, c).z;
+        }
+        n++;
+    }
+    return n;
+}
+
+static void put_textures(struct hl_renderer *r, const struct hl_item *it,
+                         uint32_t visible)
+{
+    struct hl_texture_binding *t = r->textures[visible];
+    memset(t, 0, sizeof r->textures[visible]);
+    t[HL_TEX_LIGHT].tex = r->target[HL_ROLE_LIGHT];
+    t[HL_TEX_DSF].tex = r->target[HL_ROLE_DSF];
+    memcpy(&t[HL_TEX_BASE], it->texture, sizeof it->texture);
+}
+
+/* The lights that touch a blended item, as a list for its one draw. */
+static void put_list(struct hl_renderer *r, const struct hl_frame *f,
+                     struct hl_visible *v)
+{
+    hl_vec4 data[HL_LIGHT_VEC4S];
+    v->list_first = (r->lists.used + 15) / 16;
+    for (uint32_t i = 0; i < r->n_spheres; i++) {
+        const struct hl_lit_sphere *s = &r->spheres[i];
+        if (!hl_sphere_touches_box(s, &v->box))
+            continue;
+        uint32_t n = hl_light_write(data, &f->lights[s->light], s,
+                                    f->camera.view, r->plan.kinds);
+        hl_arena_put(&r->lists, data, n * 16);
+        v->list_count++;
+    }
+    r->stats.light_refs += v->list_count;
+}
+
+enum hl_result hl_frame_gather(struct hl_renderer *r, const struct hl_frame *f)
+{
+    enum hl_result e = check_frame(r, f);
+    if (e != HL_OK)
+        return e;
+    memset(&r->stats, 0, sizeof r->stats);
+    r->frame = (r->frame + 1) % FRAMES;
+    r->arena.used = r->arena.flushed = 0;
+    r->lists.used = r->lists.flushed = 0;
+    r->arena.full = r->lists.full = false;
+    r->result = HL_OK;
+    float aspect = (float)r->plan.width / (float)r->plan.height;
+    r->grid.tan_y = f->camera.tan_half_y;
+    r->grid.tan_x = f->camera.tan_half_y * aspect;
+    r->n_spheres = hl_lights_view(r->spheres, f->lights, f->n_lights,
+                                  &f->camera, aspect);
+    r->n_opaque = cull(r, f, 0, false);
+    r->n_visible = cull(r, f, r->n_opaque, true);
+    sort_visible(r->visible, r->n_opaque, false);
+    sort_visible(r->visible + r->n_opaque, r->n_visible - r->n_opaque, true);
+    put_frame_block(r, f);
+    for (uint32_t i = 0; i < r->n_visible; i++) {
+        struct hl_visible *v = &r->visible[i];
+        if (i >= r->n_opaque)
+            put_list(r, f, v);
+        hl_gather_object(r, f, v);
+        put_material(r, &f->items[v->item], v);
+        put_textures(r, &f->items[v->item], i);
+    }
+    r->stats.items = r->n_visible;
+    r->stats.items_culled = f->n_items - r->n_visible;
+    r->stats.lights = r->n_spheres;
+    r->stats.lights_culled = f->n_lights - r->n_spheres;
+    return HL_OK;
+}

@@ -1,0 +1,124 @@
+/* SPDX-License-Identifier: Zlib */
+/* Pictures of the inside: ids, lights a pixel, rejected taps. */
+#include <string.h>
+#include "core/renderer.h"
+
+static bool on_light_buffer(const struct hl_renderer *r, enum hl_inspect what)
+{
+    return what == HL_INSPECT_LIGHTS &&
+           r->plan.pipeline == HL_PIPELINE_INFERRED;
+}
+
+void hl_inspect_size(const struct hl_renderer *r, enum hl_inspect what,
+                     uint32_t *width, uint32_t *height)
+{
+    bool light = on_light_buffer(r, what);
+    *width = light ? r->plan.light_width : r->plan.width;
+    *height = light ? r->plan.light_height : r->plan.height;
+}
+
+static enum hl_format format_of(enum hl_inspect what)
+{
+    return what == HL_INSPECT_IDS ? HL_FORMAT_R32_UINT
+           : what == HL_INSPECT_LIGHTS ? HL_FORMAT_R32_FLOAT
+                                       : HL_FORMAT_R8_UNORM;
+}
+
+/* Single-sampled, whatever the frame is: a count or an id is never averaged. */
+static enum hl_result make_targets(struct hl_renderer *r,
+                                   enum hl_inspect what)
+{
+    struct hl_tex_desc c, d;
+    memset(&c, 0, sizeof c);
+    hl_inspect_size(r, what, &c.width, &c.height);
+    d = c;
+    c.label = "inspect";
+    c.format = format_of(what);
+    c.usage = HL_TEX_TARGET | HL_TEX_READBACK;
+    d.label = "inspect depth";
+    d.format = hl_plan_target(&r->plan, HL_ROLE_DEPTH)->format;
+    d.usage = HL_TEX_TARGET;
+    hl_tex_destroy(r->device, &r->inspect_color);
+    hl_tex_destroy(r->device, &r->inspect_depth);
+    enum hl_result e = hl_tex_create(r->device, &r->inspect_color, &c);
+    if (e == HL_OK && !on_light_buffer(r, what))
+        e = hl_tex_create(r->device, &r->inspect_depth, &d);
+    return e;
+}
+
+static enum hl_result need_program(struct hl_renderer *r, int kind)
+{
+    for (uint32_t i = 0; i < r->n_surfaces; i++) {
+        hl_prog *p = &r->prog[i][kind];
+        enum hl_result e = p->id || r->surfaces[i].blended
+                           ? HL_OK : hl_surface_program(r, i, kind, p);
+        if (e != HL_OK)
+            return e;
+    }
+    return HL_OK;
+}
+
+static enum hl_result need_programs(struct hl_renderer *r,
+                                    enum hl_inspect what)
+{
+    if (what == HL_INSPECT_IDS)
+        return need_program(r, PROG_ID);
+    if (what == HL_INSPECT_REJECTS)
+        return need_program(r, PROG_REJECT);
+    if (!on_light_buffer(r, what)) {
+        enum hl_result e = need_program(r, PROG_COUNT_BASE);
+        return e == HL_OK ? need_program(r, PROG_COUNT_MORE) : e;
+    }
+    bool lists = r->plan.light_path == HL_LIGHT_PATH_LISTS;
+    hl_prog *p = lists ? &r->count_tiles : &r->count_prog;
+    return p->id ? HL_OK
+           : hl_screen_program(r, lists ? HL_SHADER_COUNT_TILES_FRAG
+                                        : HL_SHADER_COUNT_FRAG,
+                               HL_FORMAT_R32_FLOAT, HL_BLEND_ADD, 1, p);
+}
+
+static void emit(struct hl_renderer *r, const struct hl_frame *f,
+                 enum hl_inspect what)
+{
+    if (what == HL_INSPECT_LIGHTS) {
+        r->counting = true;
+        if (on_light_buffer(r, what))
+            hl_emit_light_pass(r, f);
+        else
+            hl_emit_forward(r, f);
+        r->counting = false;
+        return;
+    }
+    for (uint32_t i = 0; i < r->n_opaque; i++)
+        hl_draw_mesh(r, f, i, what == HL_INSPECT_IDS ? PROG_ID : PROG_REJECT);
+}
+
+enum hl_result hl_frame_inspect(struct hl_renderer *r,
+                                const struct hl_frame *f,
+                                enum hl_inspect what, void *out, size_t bytes)
+{
+    if (!r || !f || !out || (unsigned)what > HL_INSPECT_REJECTS)
+        return HL_ERR_INVALID;
+    bool inferred = r->plan.pipeline == HL_PIPELINE_INFERRED;
+    if (what == HL_INSPECT_REJECTS && !inferred)
+        return HL_ERR_UNSUPPORTED;
+    const float zero[4] = { 0, 0, 0, 0 };
+    enum hl_result e = hl_frame_gather(r, f);
+    if (e == HL_OK)
+        e = make_targets(r, what);
+    if (e == HL_OK)
+        e = need_programs(r, what);
+    bool light = on_light_buffer(r, what);
+    if (e == HL_OK && light && r->plan.light_path != HL_LIGHT_PATH_RECTS)
+        e = hl_build_tiles(r, f);
+    if (e != HL_OK)
+        return e;
+    hl_pass_begin(r, "inspect");
+    hl_pass_color(r, r->inspect_color, HL_LOAD_CLEAR, zero);
+    if (!light)
+        hl_pass_depth(r, r->inspect_depth, HL_LOAD_CLEAR, false);
+    emit(r, f, what);
+    hl_pass_end(r);
+    return r->result == HL_OK ? hl_tex_read(r->device, r->inspect_color, out,
+                                            bytes) : r->result;
+}

@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: Zlib */
+#ifndef HL_NEEDS_H
+#define HL_NEEDS_H
+/* What a scene asks of a frame: numbers an engine knows before it draws, and
+ * choices it may fix. Zero is "unknown" for a number, "planner's choice" for
+ * a choice. */
+#include "hal/caps.h"
+
+enum hl_pipeline {
+    HL_PIPELINE_AUTO = 0,
+    HL_PIPELINE_FORWARD,           /* up to 8 lights a draw (FWD-2)          */
+    HL_PIPELINE_FORWARD_MULTIPASS, /* one draw a light and object (FWD-1)    */
+    HL_PIPELINE_INFERRED,          /* Kircher, Lawrance 2009                 */
+    HL_PIPELINE_COUNT
+};
+
+enum hl_specular_need {
+    HL_NEED_NO_SPECULAR = 0,       /* no material is specular                */
+    HL_NEED_ONE_EXPONENT,          /* all share hl_needs.exponent            */
+    HL_NEED_EXPONENTS              /* they differ                            */
+};
+
+enum {                             /* hl_needs.lights                        */
+    HL_LIGHTS_SMOOTH = 1, HL_LIGHTS_INVERSE_SQUARE = 2, HL_LIGHTS_CONES = 4
+};                                 /* CONES: spots or directional lights     */
+
+/* How the light pass finds the lights of a pixel. */
+enum hl_light_path {
+    HL_LIGHT_PATH_AUTO = 0,
+    HL_LIGHT_PATH_RECTS,           /* scissor rectangles, K lights a draw    */
+    HL_LIGHT_PATH_TILES,           /* host-made tile lists, a draw a tile    */
+    HL_LIGHT_PATH_LISTS            /* the same lists looped in the shader    */
+};
+
+enum hl_dsf {
+    HL_DSF_AUTO = 0,               /* SLOPE, or EXACT at 1:1                 */
+    HL_DSF_NONE,                   /* plain bilinear                         */
+    HL_DSF_SLOPE_SCALED,
+    HL_DSF_CONSTANT_TAU            /* the paper's one threshold              */
+};
+
+struct hl_needs {
+    uint32_t width, height;        /* frame, pixels; required                */
+    uint32_t light_width, light_height; /* L-buffer texels; 0 = 5/8 (K Fig. 9) */
+    uint32_t samples;              /* of the frame; 0 = 1                    */
+    uint32_t n_objects, n_triangles, n_lights;
+    float lights_per_pixel;        /* mean over the screen, by light bounds  */
+    float lights_per_object;       /* mean lights that touch an object       */
+    uint32_t n_regions;            /* object regions: sum of normal groups   */
+    uint32_t lights;               /* HL_LIGHTS_*; 0 = SMOOTH                */
+    enum hl_specular_need specular;
+    float exponent;                /* HL_NEED_ONE_EXPONENT, 1..256           */
+    bool blended;                  /* some surfaces are translucent          */
+    float far;                     /* metres; 0 = 1000: depth quantisation   */
+    float peak;                    /* bound of summed light at any point     */
+    float max_error;               /* 8-bit sRGB codes; 0 = 1                */
+
+    /* Choices. */
+    enum hl_light_path light_path;
+    uint32_t batch;                /* lights a draw of RECTS, 1..16          */
+    uint32_t tile;                 /* texels a side, 8..256                  */
+    bool no_tile_depth;            /* lists without depth bounds             */
+    bool no_scissor;               /* multi-pass: every affected object whole */
+    enum hl_dsf dsf;
+    float dsf_k, dsf_c;            /* 0 = 1.5 and 0.001                      */
+    float dsf_tau;                 /* constant threshold, share of z; 0 = 1 % */
+    enum hl_format light_format;
+};
+#endif

@@ -1,0 +1,256 @@
+/* SPDX-License-Identifier: Zlib */
+/* The planner: defaults, what all pipelines share, and the choice. */
+#include <string.h>
+#include "core/pipe.h"
+#include "core/vec.h"
+
+void hl_plan_why(struct hl_plan *p, enum hl_reason why, float a, float b,
+                 float c, float d)
+{
+    if (p->n_reasons >= HL_PLAN_REASONS)
+        return;
+    struct hl_plan_reason r = { why, { a, b, c, d } };
+    p->reason[p->n_reasons++] = r;
+}
+
+struct hl_plan_target *hl_plan_add_target(struct hl_plan *p, enum hl_role role,
+                                          enum hl_format format,
+                                          uint32_t width, uint32_t height,
+                                          uint32_t samples)
+{
+    struct hl_plan_target *t = &p->target[p->n_targets++];
+    t->role = role;
+    t->format = format;
+    t->width = width;
+    t->height = height;
+    t->samples = samples;
+    t->bytes = (uint64_t)width * height * samples *
+               hl_format_info(format)->bytes;
+    return t;
+}
+
+struct hl_plan_pass *hl_plan_add_pass(struct hl_plan *p,
+                                      enum hl_pass_role role)
+{
+    struct hl_plan_pass *pass = &p->pass[p->n_passes++];
+    pass->role = role;
+    return pass;
+}
+
+const struct hl_plan_target *hl_plan_target(const struct hl_plan *p,
+                                            enum hl_role role)
+{
+    for (uint32_t i = 0; i < p->n_targets; i++)
+        if (p->target[i].role == role)
+            return &p->target[i];
+    return NULL;
+}
+
+/* The frame is linear; its 8-bit sRGB code changes by at most 1/2.4 of a
+ * code in 255 for a relative change of 1/255 near white, less below: a
+ * relative error e moves no code by more than about 106 e. */
+static bool color_good_enough(enum hl_format f, uint32_t blends, float codes)
+{
+    return 106.0f * hl_accumulation_error(f, blends) <= codes * 0.5f;
+}
+
+enum hl_refusal hl_plan_frame_targets(struct hl_plan *p,
+                                      const struct hl_ask *ask,
+                                      uint32_t blends)
+{
+    const struct hl_caps *caps = ask->caps;
+    uint32_t s = p->samples, w = p->width, h = p->height;
+    int use = HL_USE_TARGET | HL_USE_SAMPLED | (blends ? HL_USE_BLEND : 0);
+    enum hl_format color = HL_FORMAT_NONE;
+    const enum hl_format list[] = { HL_FORMAT_RGBA16_FLOAT,
+                                    HL_FORMAT_RGBA32_FLOAT, HL_FORMAT_NONE };
+    for (int i = 0; list[i]; i++) {
+        if (!hl_format_usable(caps, list[i], use, s))
+            continue;
+        color = list[i];
+        if (color_good_enough(color, blends, ask->n.max_error))
+            break;
+    }
+    if (color == HL_FORMAT_NONE)
+        return HL_REFUSED_COLOR_FORMAT;
+    const enum hl_format depths[] = { HL_FORMAT_D32_FLOAT,
+                                      HL_FORMAT_D24_UNORM_S8,
+                                      HL_FORMAT_D16_UNORM, HL_FORMAT_NONE };
+    enum hl_format depth = hl_format_pick(caps, depths, HL_USE_TARGET, s);
+    if (depth == HL_FORMAT_NONE)
+        return HL_REFUSED_DEPTH_FORMAT;
+    struct hl_plan_target *t = hl_plan_add_target(p, HL_ROLE_COLOR, color, w,
+                                                  h, s);
+    t->error = hl_accumulation_error(color, blends);
+    hl_plan_add_target(p, HL_ROLE_DEPTH, depth, w, h, s);
+    if (s > 1)
+        hl_plan_add_target(p, HL_ROLE_RESOLVED, color, w, h, 1);
+    hl_plan_why(p, HL_WHY_COLOR_FORMAT, (float)color, (float)blends, t->error,
+                ask->n.max_error);
+    return HL_REFUSED_NOTHING;
+}
+
+void hl_plan_common(struct hl_plan *p, const struct hl_ask *ask)
+{
+    const struct hl_needs *n = &ask->n;
+    p->width = n->width;
+    p->height = n->height;
+    p->samples = n->samples;
+    p->far = n->far;
+    p->falloff = n->lights & 3u;
+    p->kinds = n->lights & HL_LIGHTS_CONES ? 1 : 0;
+    p->exponent = n->exponent;
+    p->light_scale = 1.0f;
+    /* Floating point depth is finest near zero, where 1/z puts the far
+     * half of the scene: reversed, the error is the same share of z. */
+    p->reversed_depth = hl_format_usable(ask->caps, HL_FORMAT_D32_FLOAT,
+                                         HL_USE_TARGET | HL_USE_SAMPLED, 1);
+    if (p->reversed_depth)
+        hl_plan_why(p, HL_WHY_DEPTH_REVERSED, 0, 0, 0, 0);
+    if (n->samples > 1)
+        hl_plan_why(p, HL_WHY_SAMPLES, (float)n->samples, 0, 0, 0);
+    if (n->n_lights == 0)
+        hl_plan_why(p, HL_WHY_NO_LIGHTS, 0, 0, 0, 0);
+}
+
+void hl_plan_finish(struct hl_plan *p, const struct hl_ask *ask,
+                    double cost_ns)
+{
+    double bytes = 0;
+    for (uint32_t i = 0; i < p->n_targets; i++)
+        bytes += (double)p->target[i].bytes;
+    if (ask->n.blended) {
+        struct hl_plan_pass *b = hl_plan_add_pass(p, HL_PASS_BLENDED);
+        b->color[0] = HL_ROLE_COLOR;
+        b->depth = HL_ROLE_DEPTH;
+        b->depth_test = p->reversed_depth ? HL_COMPARE_GREATER_EQUAL
+                                          : HL_COMPARE_LESS_EQUAL;
+        b->blend = HL_BLEND_OVER;
+        hl_plan_why(p, HL_WHY_BLENDED_FORWARD, 0, 0, 0, 0);
+    }
+    double pixels = (double)p->width * p->height;
+    p->bytes_per_pixel = (float)(bytes / pixels);
+    p->cost_ms = (float)(cost_ns * 1e-6);
+}
+
+/* ---- needs -------------------------------------------------------------- */
+
+static bool good(float x, float low, float high)
+{
+    return x >= low && x <= high;
+}
+
+static enum hl_refusal check(const struct hl_needs *n,
+                             const struct hl_caps *caps)
+{
+    if (n->width == 0 || n->height == 0 || n->width > caps->max_tex_dim ||
+        n->height > caps->max_tex_dim)
+        return HL_REFUSED_SIZE;
+    if (n->light_width > caps->max_tex_dim ||
+        n->light_height > caps->max_tex_dim ||
+        (n->light_width == 0) != (n->light_height == 0))
+        return HL_REFUSED_LIGHT_SIZE;
+    if (n->samples > 8 || (n->samples & (n->samples - 1)) ||
+        (n->samples && !(caps->samples & n->samples)))
+        return HL_REFUSED_SAMPLES;
+    if ((n->batch && n->batch > HL_BATCH_MAX) ||
+        (n->tile && (n->tile < 8 || n->tile > 256)) ||
+        (unsigned)n->light_format >= HL_FORMAT_COUNT || n->lights > 7 ||
+        !good(n->lights_per_pixel, 0, 1e9f) ||
+        !good(n->lights_per_object, 0, 1e9f) || !good(n->far, 0, 1e9f) ||
+        !good(n->dsf_k, 0, 1e3f) || !good(n->dsf_c, 0, 1) ||
+        !good(n->dsf_tau, 0, 1) || !good(n->peak, 0, 1e30f) ||
+        !good(n->max_error, 0, 255) || !good(n->exponent, 0, 256))
+        return HL_REFUSED_VALUE;
+    return HL_REFUSED_NOTHING;
+}
+
+static void fill(struct hl_ask *ask)
+{
+    struct hl_needs *n = &ask->n;
+    n->samples = n->samples ? n->samples : 1;
+    n->far = n->far > 0 ? n->far : 1000.0f;
+    n->max_error = n->max_error > 0 ? n->max_error : 1.0f;
+    n->exponent = n->exponent >= 1 ? n->exponent : 1.0f;
+    n->n_objects = n->n_objects ? n->n_objects : 1;
+    n->lights = n->lights & 3u ? n->lights : n->lights | HL_LIGHTS_SMOOTH;
+    /* Unknown: a tenth of the lights touch a pixel, a quarter an object. */
+    ask->per_pixel = n->lights_per_pixel > 0 || !n->n_lights
+                     ? n->lights_per_pixel : (float)n->n_lights * 0.1f;
+    ask->per_object = n->lights_per_object > 0 || !n->n_lights
+                      ? n->lights_per_object : (float)n->n_lights * 0.25f;
+}
+
+/* ---- choice ------------------------------------------------------------- */
+
+typedef enum hl_refusal (*planner)(struct hl_plan *, const struct hl_ask *);
+
+static const planner planners[HL_PIPELINE_COUNT] = {
+    [HL_PIPELINE_FORWARD] = hl_plan_forward,
+    [HL_PIPELINE_FORWARD_MULTIPASS] = hl_plan_multipass,
+    [HL_PIPELINE_INFERRED] = hl_plan_inferred,
+};
+
+static enum hl_refusal plan_one(struct hl_plan *out, enum hl_pipeline pipeline,
+                                const struct hl_ask *ask, bool automatic)
+{
+    memset(out, 0, sizeof *out);
+    out->pipeline = pipeline;
+    hl_plan_why(out, automatic ? HL_WHY_PIPELINE_CHEAPEST
+                               : HL_WHY_PIPELINE_ASKED,
+                (float)pipeline, 0, 0, 0);
+    return planners[pipeline](out, ask);
+}
+
+static enum hl_refusal plan_auto(struct hl_plan *out, const struct hl_ask *ask)
+{
+    enum hl_refusal why = HL_REFUSED_PIPELINE;
+    struct hl_plan one;
+    float best = 0, second = 0;
+    for (int i = 1; i < HL_PIPELINE_COUNT; i++) {
+        enum hl_refusal r = plan_one(&one, (enum hl_pipeline)i, ask, true);
+        if (r != HL_REFUSED_NOTHING) {
+            why = why == HL_REFUSED_PIPELINE ? r : why;
+            continue;
+        }
+        if (best > 0 && one.cost_ms >= best) {
+            second = second > 0 && second < one.cost_ms ? second : one.cost_ms;
+            continue;
+        }
+        second = best;
+        best = one.cost_ms;
+        *out = one;
+    }
+    if (best <= 0)
+        return why;
+    out->reason[0].arg[1] = best;
+    out->reason[0].arg[2] = second;
+    return HL_REFUSED_NOTHING;
+}
+
+enum hl_result hl_plan_make(struct hl_plan *out, enum hl_pipeline pipeline,
+                            const struct hl_needs *needs,
+                            const struct hl_caps *caps, enum hl_refusal *why)
+{
+    enum hl_refusal unused;
+    why = why ? why : &unused;
+    *why = HL_REFUSED_NOTHING;
+    if (!out || !needs || !caps)
+        return HL_ERR_INVALID;
+    memset(out, 0, sizeof *out);
+    *why = (unsigned)pipeline < HL_PIPELINE_COUNT ? check(needs, caps)
+                                                  : HL_REFUSED_PIPELINE;
+    if (*why != HL_REFUSED_NOTHING)
+        return HL_ERR_INVALID;
+    struct hl_ask ask;
+    memset(&ask, 0, sizeof ask);
+    ask.n = *needs;
+    ask.caps = caps;
+    fill(&ask);
+    *why = pipeline == HL_PIPELINE_AUTO ? plan_auto(out, &ask)
+                                        : plan_one(out, pipeline, &ask, false);
+    if (*why == HL_REFUSED_NOTHING)
+        return HL_OK;
+    memset(out, 0, sizeof *out);
+    return HL_ERR_UNSUPPORTED;
+}

@@ -1,0 +1,127 @@
+/* SPDX-License-Identifier: Zlib */
+#ifndef HL_PLAN_H
+#define HL_PLAN_H
+/* A frame as data: what to allocate, what to run, in order, and why. Holds
+ * no handle and no pointer, so plans can be compared, printed and replayed;
+ * passes that repeat carry a word for it, so a plan does not grow with
+ * lights or tiles. K = Kircher, Lawrance 2009. */
+#include "core/needs.h"
+#include "shaders/shared/block.h"
+#include "hal/hal.h"
+
+enum hl_role {                     /* of a target                            */
+    HL_ROLE_NONE = 0,
+    HL_ROLE_NORMAL,                /* G-buffer: normal x, y (K eq. 1)        */
+    HL_ROLE_DSF,                   /* G-buffer: linear depth, region id      */
+    HL_ROLE_EXPONENT,              /* G-buffer: specular exponent            */
+    HL_ROLE_LIGHT_DEPTH,           /* depth at L-buffer size                 */
+    HL_ROLE_LIGHT,                 /* L-buffer                               */
+    HL_ROLE_COLOR,                 /* the frame, linear                      */
+    HL_ROLE_DEPTH,                 /* depth of the frame                     */
+    HL_ROLE_RESOLVED,              /* the frame, one sample a pixel          */
+    HL_ROLE_COUNT
+};
+
+enum hl_pass_role {
+    HL_PASS_NONE = 0,
+    HL_PASS_GEOMETRY,
+    HL_PASS_LIGHT,
+    HL_PASS_MATERIAL,
+    HL_PASS_FORWARD,               /* base draws, then further lights        */
+    HL_PASS_BLENDED,
+    HL_PASS_ROLE_COUNT
+};
+
+enum hl_repeat { HL_ONCE = 0, HL_PER_TILE, HL_PER_LIGHTS, HL_PER_OBJECT_LIGHTS };
+
+/* Why something was decided; text and the paper's section are made outside
+ * core from the id and up to four numbers. */
+enum hl_reason {
+    HL_WHY_NONE = 0,
+    HL_WHY_PIPELINE_ASKED, HL_WHY_PIPELINE_CHEAPEST,
+    HL_WHY_LIGHT_SIZE_ASKED, HL_WHY_LIGHT_SIZE_DEFAULT,
+    HL_WHY_NORMAL_FORMAT, HL_WHY_DSF_FORMAT,
+    HL_WHY_EXPONENT_NONE, HL_WHY_EXPONENT_CONSTANT, HL_WHY_EXPONENT_CHANNEL,
+    HL_WHY_PATH_ASKED, HL_WHY_PATH_CHEAPEST, HL_WHY_TILE_DEPTH,
+    HL_WHY_LIGHT_FORMAT_ASKED, HL_WHY_LIGHT_FORMAT_ERROR,
+    HL_WHY_COLOR_FORMAT,
+    HL_WHY_DSF_OFF, HL_WHY_DSF_SLOPE, HL_WHY_DSF_CONSTANT, HL_WHY_DSF_EXACT,
+    HL_WHY_DEPTH_REVERSED, HL_WHY_SAMPLES, HL_WHY_BLENDED_FORWARD,
+    HL_WHY_SCISSOR, HL_WHY_NO_SCISSOR, HL_WHY_NO_LIGHTS,
+    HL_WHY_COUNT
+};
+
+/* Which need could not be met. */
+enum hl_refusal {
+    HL_REFUSED_NOTHING = 0, HL_REFUSED_SIZE, HL_REFUSED_LIGHT_SIZE,
+    HL_REFUSED_SAMPLES, HL_REFUSED_NORMAL_FORMAT, HL_REFUSED_COLOR_FORMAT,
+    HL_REFUSED_LIGHT_FORMAT, HL_REFUSED_DEPTH_FORMAT, HL_REFUSED_STORAGE,
+    HL_REFUSED_VALUE, HL_REFUSED_PIPELINE, HL_REFUSED_COUNT
+};
+
+struct hl_plan_reason { enum hl_reason why; float arg[4]; };
+
+struct hl_plan_target {
+    enum hl_role role;
+    enum hl_format format;
+    uint32_t width, height, samples;
+    uint32_t read_by;              /* bits 1 << enum hl_pass_role            */
+    uint64_t bytes;
+    float error;                   /* worst encoding error; unit by role:
+                                    * NORMAL degrees up to 90 from the view
+                                    * axis, DSF metres, EXPONENT and LIGHT
+                                    * and COLOR relative                     */
+};
+
+struct hl_plan_pass {
+    enum hl_pass_role role;
+    enum hl_repeat repeat;
+    enum hl_role color[3];         /* NONE where unused                      */
+    enum hl_role depth;
+    bool depth_read_only, depth_write;
+    enum hl_compare depth_test;
+    enum hl_blend blend;
+    uint32_t lights_a_draw;        /* 0: none                                */
+};
+
+enum { HL_PLAN_TARGETS = 8, HL_PLAN_PASSES = 6, HL_PLAN_REASONS = 20 };
+
+struct hl_plan {
+    enum hl_pipeline pipeline;
+    uint32_t width, height, light_width, light_height, samples;
+    uint32_t n_targets, n_passes, n_reasons;
+    struct hl_plan_target target[HL_PLAN_TARGETS];
+    struct hl_plan_pass pass[HL_PLAN_PASSES];
+    struct hl_plan_reason reason[HL_PLAN_REASONS];
+
+    uint32_t specular;             /* HL_SPECULAR_* of block.h               */
+    float exponent;
+    uint32_t falloff, kinds;       /* values of HL_SPEC_FALLOFF, _KINDS      */
+    enum hl_light_path light_path;
+    uint32_t batch, tile;
+    bool tile_depth;               /* lists bounded by depth read back       */
+    bool scissor;
+    bool reversed_depth;           /* near is 1, far is 0                    */
+    uint32_t dsf;                  /* HL_DSF_* of block.h                    */
+    float dsf_k, dsf_c, dsf_tau;
+    float light_scale;             /* light = stored * light_scale           */
+    float far;                     /* the depth that DSF stores as 1         */
+
+    float bytes_per_pixel;         /* all targets, a frame pixel             */
+    float moved_per_pixel;         /* bytes read and written a frame pixel   */
+    float light_error;             /* predicted relative error of the light  */
+    float cost_ms;                 /* predicted by caps.cost                 */
+};
+
+/* The cheapest plan of `pipeline` (AUTO: of all) that meets `needs` within
+ * `caps`. Pure: equal inputs give equal plans; allocates nothing, touches no
+ * device. HL_ERR_UNSUPPORTED or HL_ERR_INVALID when a need cannot be met:
+ * *why (may be NULL) then says which, and *out is zeroed. */
+enum hl_result hl_plan_make(struct hl_plan *out, enum hl_pipeline pipeline,
+                            const struct hl_needs *needs,
+                            const struct hl_caps *caps, enum hl_refusal *why);
+
+/* Target of a role, NULL where the plan has none. */
+const struct hl_plan_target *hl_plan_target(const struct hl_plan *,
+                                            enum hl_role role);
+#endif

@@ -1,0 +1,101 @@
+/* SPDX-License-Identifier: Zlib */
+#ifndef HL_RENDERER_H
+#define HL_RENDERER_H
+/* Private to core: what frame*.c share. These files alone call a device. */
+#include "core/frame.h"
+#include "core/light.h"
+
+/* A surface's programs. */
+enum {
+    PROG_GBUFFER, PROG_MATERIAL, PROG_BASE, PROG_MORE, PROG_BLENDED,
+    PROG_ID, PROG_REJECT, PROG_COUNT_BASE, PROG_COUNT_MORE, PROG_KINDS
+};
+
+/* Light draws come in four sizes, so that a tile of five lights does not
+ * shade sixteen; index [size][adds to what is there]. */
+enum { LIGHT_SIZES = 4 };
+
+/* Uniform data of a frame is gathered on the host and written once a stage. */
+struct hl_arena {
+    uint8_t *bytes;
+    uint32_t size, used, flushed, align;
+    bool full;
+};
+
+/* Three: two frames may be submitted while the third is prepared. */
+enum { FRAMES = 3 };
+
+struct hl_visible {
+    uint32_t item;
+    float z;                 /* nearest depth of its box                     */
+    struct hl_box box;
+    uint32_t object, material, material_bytes; /* offsets in the arena       */
+    uint32_t list_first, list_count;           /* of a blended item          */
+};
+
+struct hl_renderer {
+    struct hl_device *device;
+    struct hl_plan plan;
+    uint32_t n_surfaces, max_items, max_lights, max_draws, max_refs;
+    struct hl_surface *surfaces;
+    hl_prog (*prog)[PROG_KINDS];
+    hl_tex target[HL_ROLE_COUNT];
+    hl_tex inspect_color, inspect_depth;
+    hl_prog light_prog[LIGHT_SIZES][2], list_prog, count_prog, count_tiles;
+    hl_buf uniform[FRAMES], list[FRAMES], tiles[FRAMES];
+    uint32_t frame;          /* which of FRAMES                              */
+    struct hl_arena arena, lists;
+    uint32_t frame_offset;   /* of hl_frame_block in the arena               */
+
+    /* Scratch of one frame. */
+    struct hl_lit_sphere *spheres;
+    uint32_t n_spheres;
+    struct hl_visible *visible;    /* opaque first, then blended             */
+    uint32_t n_opaque, n_visible;
+    struct hl_texture_binding (*textures)[HL_TEX_MESH_COUNT];
+    struct hl_texture_binding light_textures[3];
+    struct hl_draw *draws;
+    uint32_t n_draws;
+    uint32_t *tile_first, *refs;
+    float *tile_z0, *tile_z1, *depth_read;
+    uint32_t *tile_heads;
+    struct hl_tile_grid grid;
+    struct hl_frame_stats stats;
+    /* Pass under construction: draws beyond max_draws go out early. */
+    struct hl_pass pass;
+    bool counting;           /* draw light counts in place of light          */
+    enum hl_result result;
+};
+
+/* frame_setup.c */
+hl_prog hl_light_program(struct hl_renderer *, uint32_t lights, bool add,
+                         uint32_t *size);
+enum hl_result hl_surface_program(struct hl_renderer *, uint32_t surface,
+                                  int kind, hl_prog *out);
+enum hl_result hl_screen_program(struct hl_renderer *, enum hl_shader fragment,
+                                 enum hl_format color, enum hl_blend blend,
+                                 uint32_t batch, hl_prog *out);
+
+/* frame_data.c: check, cull and gather; HL_OK or why not. */
+enum hl_result hl_frame_gather(struct hl_renderer *, const struct hl_frame *);
+uint32_t hl_arena_put(struct hl_arena *, const void *data, uint32_t bytes);
+/* Write what was gathered since the last flush. */
+enum hl_result hl_frame_flush(struct hl_renderer *);
+/* Object block of a visible item. */
+void hl_gather_object(struct hl_renderer *, const struct hl_frame *,
+                      struct hl_visible *);
+
+/* frame.c */
+struct hl_draw *hl_draw_begin(struct hl_renderer *);
+struct hl_draw *hl_draw_mesh(struct hl_renderer *, const struct hl_frame *,
+                             uint32_t visible, int kind);
+void hl_draw_lights(struct hl_renderer *, struct hl_draw *, uint32_t offset);
+void hl_pass_begin(struct hl_renderer *, const char *label);
+void hl_pass_color(struct hl_renderer *, hl_tex, enum hl_load,
+                   const float clear[4]);
+void hl_pass_depth(struct hl_renderer *, hl_tex, enum hl_load, bool read_only);
+void hl_pass_end(struct hl_renderer *);
+void hl_emit_light_pass(struct hl_renderer *, const struct hl_frame *);
+void hl_emit_forward(struct hl_renderer *, const struct hl_frame *);
+enum hl_result hl_build_tiles(struct hl_renderer *, const struct hl_frame *);
+#endif

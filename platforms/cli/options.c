@@ -1,0 +1,467 @@
+/* SPDX-License-Identifier: Zlib */
+/* One table of options: it is read by the parser and printed as the help. */
+#include <stddef.h>
+#include <stdio.h>
+#include <string.h>
+#include "hal/hal.h"
+#include "platforms/cli/commands.h"
+#include "platforms/cli/value.h"
+#include "platforms/platforms.h"
+#include "shaders/shared/block.h"
+
+enum kind {                  /* how a value is read and where it goes        */
+    FLAG, TEXT, COUNT, REAL, SIZE,               /* straight into the member */
+    BACKEND, PROFILE, PIPELINE, SAMPLES, CAMERA, AMBIENT, BACKGROUND,
+    LIGHTS_MODE, DSF, LIGHT_PATH, TILE_DEPTH, SCISSOR, IDS_SCHEME,
+    LIGHT_FORMAT, MIN_PSNR, MAX_ERROR
+};
+
+#define R (1u << HLC_RENDER)
+#define P (1u << HLC_PLAN)
+#define D (1u << HLC_DEVICES)
+#define S (1u << HLC_SCENE)
+#define C (1u << HLC_COMPARE)
+#define AT(member) offsetof(struct hlc_options, member)
+#define FLOAT_RANGE 1e9      /* well inside float, and metres enough         */
+
+struct row {
+    const char *name, *value; /* words are "a|b", NULL for a flag            */
+    enum kind kind;
+    unsigned commands;
+    size_t at;
+    double low, high;
+    const char *help;
+};
+
+static const struct row rows[] = {
+    { "backend", "vulkan|gl|packemu|null", BACKEND, R | P | D, 0, 0, 0,
+      "default: the first that has a device" },
+    { "device", "N|NAME", TEXT, R | P, AT(device), 0, 0,
+      "index or part of a name, see 'halflight devices'" },
+    { "validation", NULL, FLAG, R | P, AT(validation), 0, 0,
+      "driver validation layers" },
+    { "profile", "native|dx10|xbox360|ps3", PROFILE, R | P, 0, 0, 0,
+      "console rules; this build has only native" },
+    { "pipeline", "auto|forward|forward-multipass|inferred|reference",
+      PIPELINE, R | P, 0, 0, 0, "default: the cheapest" },
+    { "size", "WxH", SIZE, R | P, AT(width), 1, HLC_SIZE_MAX,
+      "pixels; default 1280x720" },
+    { "light-size", "WxH", SIZE, R | P, AT(light_width), 1, HLC_SIZE_MAX,
+      "of the light buffer; default 5/8 of the size" },
+    { "samples", "1|2|4|8", SAMPLES, R | P, 0, 0, 0, "a pixel; default 1" },
+    { "camera", "ex,ey,ez,tx,ty,tz,vfov", CAMERA, R | P, 0, 0, 0,
+      "eye, target, degrees; --camera=-1,... where it begins with a minus" },
+    { "near", "METRES", REAL, R | P, AT(near), 1e-6, FLOAT_RANGE, "" },
+    { "far", "METRES", REAL, R | P, AT(far), 1e-6, FLOAT_RANGE,
+      "default: by the scene's bounds" },
+    { "lights", "FILE.csv", TEXT, R | P | S, AT(lights), 0, 0,
+      "x,y,z,radius,r,g,b a line" },
+    { "lights-mode", "add|replace", LIGHTS_MODE, R | P | S, 0, 0, 0,
+      "what --lights does to the scene's own; default add" },
+    { "ambient", "r,g,b", AMBIENT, R | P, 0, 0, 0, "linear" },
+    { "background", "r,g,b", BACKGROUND, R | P, 0, 0, 0, "linear" },
+    { "no-normal-maps", NULL, FLAG, R | P, AT(no_normal_maps), 0, 0, "" },
+    { "no-specular", NULL, FLAG, R | P, AT(no_specular), 0, 0, "" },
+    { "max-error", "E", MAX_ERROR, R | P | C, 0, 0, 0,
+      "render, plan: 8-bit codes a plan may be off; compare: largest linear "
+      "difference that passes" },
+    { "light-path", "auto|rects|tiles|lists", LIGHT_PATH, R | P, 0, 0, 0,
+      "how the light pass finds its lights" },
+    { "light-batch", "K", COUNT, R | P, AT(light_batch), 1, HL_BATCH_MAX,
+      "lights a draw" },
+    { "tile", "N", COUNT, R | P, AT(tile), 8, 256, "texels a side" },
+    { "tile-depth", "on|off", TILE_DEPTH, R | P, 0, 0, 0,
+      "may lists be bounded by depth; default on" },
+    { "scissor", "on|off", SCISSOR, R | P, 0, 0, 0,
+      "of forward-multipass; default on" },
+    { "light-format", "FORMAT", LIGHT_FORMAT, R | P, 0, 0, 0,
+      "of the light buffer, such as RGBA16_FLOAT" },
+    { "ids-scheme", "unique|colored|paper", IDS_SCHEME, R | P, 0, 0, 0,
+      "numbers of regions; default unique" },
+    { "dsf", "auto|off|slope|constant", DSF, R | P, 0, 0, 0,
+      "filter of the light buffer" },
+    { "dsf-k", "K", REAL, R | P, AT(dsf_k), 1e-3, 1e3,
+      "slope factor; 1.1 at least keeps a tilted surface whole" },
+    { "dsf-c", "C", REAL, R | P, AT(dsf_c), 1e-9, 1, "share of depth" },
+    { "dsf-tau", "T", REAL, R | P, AT(dsf_tau), 1e-9, 1,
+      "constant threshold, share of depth" },
+    { "out", "FILE", TEXT, R | S, AT(out), 0, 0,
+      "render: PNG; scene: prefix of the files" },
+    { "hdr", "F.pfm", TEXT, R, AT(hdr), 0, 0, "linear picture" },
+    { "exposure", "EV", REAL, R, AT(exposure), -64, 64, "of the PNG" },
+    { "json", "FILE", TEXT, R | P | D | C, AT(json), 0, 0,
+      "'-' is stdout; see docs/json.md" },
+    { "dump", "DIR", TEXT, R, AT(dump), 0, 0, "every target as an image" },
+    { "ids", "F.png", TEXT, R | C, AT(ids), 0, 0,
+      "render: write object and normal group ids; compare: read the "
+      "reference's" },
+    { "frames", "N", COUNT, R, AT(frames), 1, HLC_FRAMES_MAX,
+      "timed frames" },
+    { "warmup", "N", COUNT, R, AT(warmup), 0, HLC_FRAMES_MAX,
+      "frames before them; default 3" },
+    { "supersample", "N", COUNT, R, AT(supersample), 1, 64,
+      "N x N samples a pixel, pipeline reference only" },
+    { "min-psnr", "DB", MIN_PSNR, C, 0, 0, 0, "smallest PSNR that passes" },
+};
+enum { N_ROWS = sizeof rows / sizeof rows[0] };
+
+struct command {
+    const char *name, *args;
+    uint32_t min_args, max_args;
+    const char *help;
+};
+static const struct command commands[HLC_COMMAND_COUNT] = {
+    [HLC_HELP] = { "help", "[COMMAND]", 0, 1, "this text" },
+    [HLC_VERSION] = { "version", "", 0, 0, "version" },
+    [HLC_RENDER] = { "render", "SCENE", 1, 1, "draw a picture" },
+    [HLC_PLAN] = { "plan", "SCENE", 1, 1,
+                   "what would be drawn with, and why" },
+    [HLC_DEVICES] = { "devices", "", 0, 0, "backends, drivers, devices" },
+    [HLC_SCENE] = { "scene", "[SCENE]", 0, 1,
+                    "list built-in scenes, or write one as files" },
+    [HLC_COMPARE] = { "compare", "TEST REFERENCE", 2, 2,
+                      "how far a PNG or PFM is from another" },
+};
+
+/* ---- reading one value -------------------------------------------------- */
+
+static int bad(const struct row *r, const char *value, const char *what)
+{
+    return hlc_fail(HLC_BAD, "--%s %s: %s", r->name, value, what);
+}
+
+static int take_count(void *at, const struct row *r, const char *value)
+{
+    uint32_t v;
+    if (!hlc_read_count(&v, value) || v < r->low || v > r->high)
+        return hlc_fail(HLC_BAD, "--%s %s: must be a whole number from %g to "
+                        "%g", r->name, value, r->low, r->high);
+    memcpy(at, &v, sizeof v);
+    return 0;
+}
+
+static int take_real(void *at, const struct row *r, const char *value)
+{
+    double v;
+    if (!hlc_read_real(&v, value) || v < r->low || v > r->high)
+        return hlc_fail(HLC_BAD, "--%s %s: must be a number from %g to %g",
+                        r->name, value, r->low, r->high);
+    memcpy(at, &v, sizeof v);
+    return 0;
+}
+
+/* at: width and height, one behind the other. */
+static int take_size(void *at, const struct row *r, const char *value)
+{
+    uint32_t v[2];
+    if (!hlc_read_size(&v[0], &v[1], value) || !v[0] || !v[1])
+        return bad(r, value, "must be WxH, whole numbers from 1");
+    if (v[0] > HLC_SIZE_MAX || v[1] > HLC_SIZE_MAX)
+        return hlc_fail(HLC_BAD, "--%s %s: the limit is %d a side", r->name,
+                        value, HLC_SIZE_MAX);
+    memcpy(at, v, sizeof v);
+    return 0;
+}
+
+static int take_color(double *out, bool *has, const struct row *r,
+                      const char *value)
+{
+    double v[3];
+    if (!hlc_read_reals(v, 3, value))
+        return bad(r, value, "must be three numbers r,g,b");
+    for (int i = 0; i < 3; i++)
+        if (v[i] < 0 || v[i] > FLOAT_RANGE)
+            return bad(r, value, "must be from 0 to 1e9");
+    memcpy(out, v, sizeof v);
+    *has = true;
+    return 0;
+}
+
+static int take_camera(struct hlc_options *o, const struct row *r,
+                       const char *value)
+{
+    double v[7];
+    bool same = true;
+    if (!hlc_read_reals(v, 7, value))
+        return bad(r, value, "must be seven numbers ex,ey,ez,tx,ty,tz,vfov");
+    for (int i = 0; i < 6; i++)
+        if (v[i] < -FLOAT_RANGE || v[i] > FLOAT_RANGE)
+            return bad(r, value, "positions must be within 1e9");
+    if (v[6] <= 0 || v[6] >= 180)
+        return bad(r, value, "vfov must be above 0 and below 180 degrees");
+    for (int i = 0; i < 3; i++)
+        same = same && (float)v[i] == (float)v[i + 3];
+    if (same)
+        return bad(r, value, "eye and target are one point");
+    memcpy(o->eye, v, sizeof o->eye);
+    memcpy(o->target, v + 3, sizeof o->target);
+    o->vfov = v[6];
+    o->has_camera = true;
+    return 0;
+}
+
+/* Names of the backends in this build, "vulkan, null". */
+static void backend_names(char *out, size_t bytes)
+{
+    size_t used = 0;
+    out[0] = 0;
+    for (uint32_t i = 0; hl_platform(i) && used < bytes; i++)
+        used += (size_t)snprintf(out + used, bytes - used, "%s%s",
+                                 i ? ", " : "", hl_platform(i)->name);
+}
+
+static int take_backend(struct hlc_options *o, const struct row *r,
+                        const char *value)
+{
+    char names[128];
+    if (hl_platform_find(value)) {
+        o->backend = value;
+        return 0;
+    }
+    backend_names(names, sizeof names);
+    return hlc_fail(HLC_NO_DEVICE, "--backend %s: %s; this build has %s",
+                    value, hlc_read_word(value, r->value) < 0
+                    ? "no such backend" : "not built in", names);
+}
+
+static int take_format(struct hlc_options *o, const struct row *r,
+                       const char *value)
+{
+    for (int i = HL_FORMAT_NONE + 1; i < HL_FORMAT_COUNT; i++)
+        if (!strcmp(hl_format_info((enum hl_format)i)->name, value)) {
+            o->light_format = (enum hl_format)i;
+            return 0;
+        }
+    return bad(r, value, "no such format; see 'halflight devices --json -'");
+}
+
+static int take_max_error(struct hlc_options *o, const struct row *r,
+                          const char *value)
+{
+    bool compare = o->command == HLC_COMPARE;
+    struct row range = *r;
+    range.low = compare ? 0 : 1e-3;
+    range.high = compare ? 1e30 : 255;
+    o->has_max_error = true;
+    return take_real(&o->max_error, &range, value);
+}
+
+static int take_min_psnr(struct hlc_options *o, const struct row *r,
+                         const char *value)
+{
+    struct row range = *r;
+    range.low = -1000;
+    range.high = 1000;
+    o->has_min_psnr = true;
+    return take_real(&o->min_psnr, &range, value);
+}
+
+/* A value that is one of the words of the row's own text. */
+static int take_word(struct hlc_options *o, const struct row *r,
+                     const char *value)
+{
+    int i = hlc_read_word(value, r->value);
+    if (i < 0)
+        return hlc_fail(HLC_BAD, "--%s %s: must be one of %s", r->name, value,
+                        r->value);
+    switch (r->kind) {
+    case PROFILE:
+        return i ? bad(r, value, "this build has only native") : 0;
+    case PIPELINE:
+        o->reference = i == HL_PIPELINE_COUNT;
+        o->pipeline = o->reference ? HL_PIPELINE_AUTO : (enum hl_pipeline)i;
+        return 0;
+    case SAMPLES: o->samples = 1u << i; return 0;
+    case LIGHTS_MODE: o->lights_replace = i == 1; return 0;
+    case DSF: o->dsf = (enum hl_dsf)i; return 0;
+    case LIGHT_PATH: o->light_path = (enum hl_light_path)i; return 0;
+    case TILE_DEPTH: o->no_tile_depth = i == 1; return 0;
+    case SCISSOR: o->no_scissor = i == 1; return 0;
+    case IDS_SCHEME: o->ids_scheme = (enum hlc_ids_scheme)i; return 0;
+    default: return bad(r, value, "is not read");
+    }
+}
+
+static int take(struct hlc_options *o, const struct row *r, const char *value)
+{
+    char *at = (char *)o + r->at;
+    switch (r->kind) {
+    case FLAG: *(bool *)(void *)at = true; return 0;
+    case TEXT: memcpy(at, &value, sizeof value); return 0;
+    case COUNT: return take_count(at, r, value);
+    case REAL: return take_real(at, r, value);
+    case SIZE: return take_size(at, r, value);
+    case BACKEND: return take_backend(o, r, value);
+    case CAMERA: return take_camera(o, r, value);
+    case AMBIENT: return take_color(o->ambient, &o->has_ambient, r, value);
+    case BACKGROUND:
+        return take_color(o->background, &o->has_background, r, value);
+    case LIGHT_FORMAT: return take_format(o, r, value);
+    case MIN_PSNR: return take_min_psnr(o, r, value);
+    case MAX_ERROR: return take_max_error(o, r, value);
+    default: return take_word(o, r, value);
+    }
+}
+
+/* ---- the line ----------------------------------------------------------- */
+
+static const struct row *find_row(const char *name, size_t length)
+{
+    for (int i = 0; i < N_ROWS; i++)
+        if (strlen(rows[i].name) == length &&
+            !memcmp(rows[i].name, name, length))
+            return &rows[i];
+    return NULL;
+}
+
+/* "-1,2" and "-" are values; "--out" is the next option. */
+static bool is_value(const char *text)
+{
+    return text && (text[0] != '-' || !text[1] ||
+                    strchr("0123456789.", text[1]));
+}
+
+/* argv[*i] begins with "--"; *i moves on over a value of its own word. */
+static int parse_option(struct hlc_options *o, int *i, char **argv)
+{
+    const char *name = argv[*i] + 2, *equals = strchr(name, '=');
+    size_t length = equals ? (size_t)(equals - name) : strlen(name);
+    const struct row *r = find_row(name, length);
+    const char *value = equals ? equals + 1 : NULL;
+    if (!r)
+        return hlc_fail(HLC_BAD, "--%.*s: unknown option", (int)length, name);
+    if (!(r->commands & 1u << o->command))
+        return hlc_fail(HLC_BAD, "--%s: not an option of %s", r->name,
+                        commands[o->command].name);
+    if (r->kind == FLAG && value)
+        return hlc_fail(HLC_BAD, "--%s=%s: takes no value", r->name, value);
+    if (r->kind != FLAG && !value && is_value(argv[*i + 1]))
+        value = argv[++*i];
+    if (r->kind != FLAG && (!value || !*value))
+        return hlc_fail(HLC_BAD, "--%s: needs a value: %s", r->name, r->value);
+    return take(o, r, value);
+}
+
+bool hlc_command_find(enum hlc_command *out, const char *name)
+{
+    for (int i = 0; i < HLC_COMMAND_COUNT; i++)
+        if (!strcmp(commands[i].name, name)) {
+            *out = (enum hlc_command)i;
+            return true;
+        }
+    return false;
+}
+
+static int parse_command(struct hlc_options *o, const char *name)
+{
+    if (!strcmp(name, "--help") || !strcmp(name, "-h"))
+        name = "help";
+    if (!strcmp(name, "--version"))
+        name = "version";
+    if (hlc_command_find(&o->command, name))
+        return 0;
+    if (name[0] == '-')
+        return hlc_fail(HLC_BAD, "%s: the command comes first; see "
+                        "'halflight help'", name);
+    return hlc_fail(HLC_BAD, "%s: no such command; see 'halflight help'",
+                    name);
+}
+
+static int check(const struct hlc_options *o)
+{
+    const struct command *c = &commands[o->command];
+    if (o->n_args < c->min_args)
+        return hlc_fail(HLC_BAD, "%s: needs %s", c->name, c->args);
+    if (o->near > 0 && o->far > 0 && o->near >= o->far)
+        return hlc_fail(HLC_BAD, "--near %g --far %g: near must be below far",
+                        o->near, o->far);
+    if (o->supersample && !o->reference)
+        return hlc_fail(HLC_BAD, "--supersample %u: is an option of "
+                        "--pipeline reference", (unsigned)o->supersample);
+    if (o->command == HLC_SCENE && o->n_args && !o->out)
+        return hlc_fail(HLC_BAD, "scene %s: needs --out PREFIX", o->arg[0]);
+    if (o->command == HLC_SCENE && !o->n_args && (o->out || o->lights))
+        return hlc_fail(HLC_BAD, "scene: needs a SCENE to write");
+    return 0;
+}
+
+static int parse_rest(struct hlc_options *o, int argc, char **argv)
+{
+    const struct command *c = &commands[o->command];
+    bool options = true;
+    for (int i = 2; i < argc; i++) {
+        const char *a = argv[i];
+        if (options && !strcmp(a, "--")) {
+            options = false;
+        } else if (options && (!strcmp(a, "--help") || !strcmp(a, "-h"))) {
+            o->arg[0] = c->name;
+            o->n_args = 1;
+            o->command = HLC_HELP;
+            return 0;
+        } else if (options && !strncmp(a, "--", 2)) {
+            int code = parse_option(o, &i, argv);
+            if (code)
+                return code;
+        } else if (options && a[0] == '-' && a[1]) {
+            return hlc_fail(HLC_BAD, "%s: unknown option", a);
+        } else if (o->n_args == c->max_args) {
+            return hlc_fail(HLC_BAD, "%s: %s takes no further argument", a,
+                            c->name);
+        } else {
+            o->arg[o->n_args++] = a;
+        }
+    }
+    return check(o);
+}
+
+int hlc_options_parse(struct hlc_options *out, int argc, char **argv)
+{
+    memset(out, 0, sizeof *out);
+    out->width = 1280;
+    out->height = 720;
+    out->samples = 1;
+    out->warmup = 3;
+    if (argc < 2)
+        return 0;
+    int code = parse_command(out, argv[1]);
+    return code ? code : parse_rest(out, argc, argv);
+}
+
+/* ---- help --------------------------------------------------------------- */
+
+static void print_options(enum hlc_command command)
+{
+    for (int i = 0; i < N_ROWS; i++) {
+        const struct row *r = &rows[i];
+        if (r->commands & 1u << command)
+            printf("  --%s%s%s%s%s\n", r->name, r->value ? " " : "",
+                   r->value ? r->value : "", r->help[0] ? "\n        " : "",
+                   r->help);
+    }
+}
+
+static void print_command(const struct command *c, int width)
+{
+    char line[64];
+    snprintf(line, sizeof line, "%s%s%s", c->name, c->args[0] ? " " : "",
+             c->args);
+    printf("  halflight %-*s  %s\n", width, line, c->help);
+}
+
+void hlc_options_help(enum hlc_command command)
+{
+    if (command != HLC_HELP) {
+        print_command(&commands[command], 0);
+        print_options(command);
+        return;
+    }
+    printf("halflight: many dynamic lights on any graphics machine\n\n");
+    for (int i = HLC_RENDER; i < HLC_COMMAND_COUNT; i++)
+        print_command(&commands[i], 24);
+    print_command(&commands[HLC_HELP], 24);
+    printf("\nSCENE is a built-in name ('halflight scene' lists them) or a "
+           ".gltf, .glb or .obj\nfile. Options are --name value or "
+           "--name=value; 'halflight help COMMAND' lists\nthem. Exit code: "
+           "0 done, 1 a comparison failed, 2 bad usage or input, 3 no such\n"
+           "backend or device.\n");
+}

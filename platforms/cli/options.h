@@ -1,0 +1,85 @@
+/* SPDX-License-Identifier: Zlib */
+#ifndef HLC_OPTIONS_H
+#define HLC_OPTIONS_H
+/* The command line, parsed and checked. Strings point into argv; nothing is
+ * owned. A value that was not given has the default stated here. */
+#include <stdbool.h>
+#include <stdint.h>
+#include "core/needs.h"
+#include "hal/caps.h"
+
+enum hlc_command {
+    HLC_HELP = 0, HLC_VERSION, HLC_RENDER, HLC_PLAN, HLC_DEVICES, HLC_SCENE,
+    HLC_COMPARE, HLC_COMMAND_COUNT
+};
+
+/* How --ids-scheme names regions in the DSF buffer (core/ids.h). */
+enum hlc_ids_scheme {
+    HLC_IDS_UNIQUE = 0,      /* coloured beyond 65,534 regions               */
+    HLC_IDS_COLORED,
+    HLC_IDS_PAPER            /* random 8-bit ids, as published               */
+};
+
+enum { HLC_SIZE_MAX = 16384, HLC_FRAMES_MAX = 100000, HLC_ARGS = 2 };
+
+struct hlc_options {
+    enum hlc_command command;
+    const char *arg[HLC_ARGS];   /* SCENE, or TEST and REF; NULL past n_args */
+    uint32_t n_args;
+
+    /* machine */
+    const char *backend;     /* a name hl_platform_find knows; NULL: the
+                              * first that has a device                      */
+    const char *device;      /* as hl_device_desc.device; NULL: best         */
+    bool validation;
+
+    /* picture */
+    uint32_t width, height;  /* pixels, 1..HLC_SIZE_MAX; 1280 x 720          */
+    uint32_t samples;        /* 1, 2, 4 or 8; 1                              */
+    uint32_t supersample;    /* reference: N x N a pixel, 1..64; 0 = off     */
+    double exposure;         /* EV, -64..64; 0                               */
+    const char *out, *hdr;   /* PNG, PFM; NULL: not written                  */
+    const char *json;        /* "-" = stdout; NULL: not written              */
+    const char *dump;        /* folder; NULL: none                           */
+    const char *ids;         /* render: PNG to write; compare: PNG to read   */
+    uint32_t frames;         /* timed; 0 = not asked: one frame, untimed     */
+    uint32_t warmup;         /* frames drawn before the timed ones; 3        */
+
+    /* scene */
+    bool has_camera;
+    double eye[3], target[3], vfov;  /* vfov degrees, 0 < vfov < 180         */
+    const char *lights;      /* CSV; NULL: none                              */
+    bool lights_replace;     /* false: added to the scene's                  */
+    bool has_ambient, has_background;
+    double ambient[3], background[3]; /* >= 0                                */
+    double near, far;        /* metres, > 0, near < far if both; 0 = by the
+                              * scene's bounds                               */
+    bool no_normal_maps, no_specular;
+
+    /* pipeline and the planner's choices */
+    enum hl_pipeline pipeline;       /* AUTO                                 */
+    bool reference;                  /* --pipeline reference                 */
+    uint32_t light_width, light_height; /* texels; 0 = planner's             */
+    enum hl_light_path light_path;   /* AUTO                                 */
+    uint32_t light_batch;            /* 1..16; 0 = planner's                 */
+    uint32_t tile;                   /* 8..256 texels; 0 = planner's         */
+    bool no_tile_depth, no_scissor;
+    enum hl_dsf dsf;                 /* AUTO                                 */
+    double dsf_k, dsf_c, dsf_tau;    /* 0 = planner's                        */
+    enum hlc_ids_scheme ids_scheme;
+    enum hl_format light_format;     /* NONE = planner's                     */
+
+    /* --max-error: of a plan in 8-bit sRGB codes, of compare the largest
+     * linear difference that passes. */
+    bool has_max_error, has_min_psnr;
+    double max_error, min_psnr;
+};
+
+/* Parse argv[1..]. 0, or an exit code after one line on stderr. */
+int hlc_options_parse(struct hlc_options *out, int argc, char **argv);
+
+/* Command of a name; false when there is none. */
+bool hlc_command_find(enum hlc_command *out, const char *name);
+/* Print the help of one command, or for HLC_HELP of the tool, to stdout. */
+void hlc_options_help(enum hlc_command command);
+#endif

@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: Zlib */
+#ifndef HLC_PLAN_TEXT_H
+#define HLC_PLAN_TEXT_H
+/* A plan in words and as JSON. Needs no device. */
+#include <stddef.h>
+#include <stdio.h>
+#include <cjson/cJSON.h>
+#include "core/plan.h"
+
+/* Names as the options and the JSON spell them; never NULL. */
+const char *hlc_pipeline_name(enum hl_pipeline);       /* "inferred"         */
+const char *hlc_role_name(enum hl_role);               /* "light"            */
+const char *hlc_pass_name(enum hl_pass_role);          /* "geometry"         */
+const char *hlc_light_path_name(enum hl_light_path);   /* "tiles"            */
+const char *hlc_reason_name(enum hl_reason);           /* "dsf_slope"        */
+const char *hlc_dsf_name(uint32_t dsf);                /* HL_DSF_*: "slope"  */
+const char *hlc_specular_name(uint32_t specular);      /* HL_SPECULAR_*      */
+const char *hlc_blend_name(enum hl_blend);
+const char *hlc_compare_name(enum hl_compare);
+const char *hlc_repeat_name(enum hl_repeat);
+
+/* One sentence with its numbers, and the section of the paper that says so,
+ * "" where it is not the paper's. Cut to `bytes`. */
+void hlc_reason_text(const struct hl_plan_reason *, char *out, size_t bytes);
+const char *hlc_reason_section(enum hl_reason);
+/* What could not be met, as a sentence; "" for HL_REFUSED_NOTHING. */
+const char *hlc_refusal_text(enum hl_refusal);
+
+/* Targets, passes, totals and every reason, for a person and for tests:
+ * equal plans give equal text. */
+void hl_plan_text(FILE *out, const struct hl_plan *plan);
+/* The "plan" object of docs/json.md; NULL when memory is out. */
+cJSON *hlc_plan_json(const struct hl_plan *plan);
+#endif

@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: Zlib */
+#ifndef HLC_SETUP_H
+#define HLC_SETUP_H
+/* What several commands begin with: the scene as the command line changed it,
+ * an open device, a plan. */
+#include "platforms/cli/bridge.h"
+
+/* Load o->arg[0], add or replace lights, override camera, ambient and
+ * background. False with one line in *error; *out is then zeroed. */
+bool hlc_scene_open(struct hlh_scene *out, const struct hlc_options *o,
+                    struct hlh_error *error);
+
+/* A device and what it last complained of. Not to be moved while open. */
+struct hlc_machine {
+    struct hl_device *device;
+    const struct hl_backend *backend;
+    char complaint[256];         /* "" or the last error that was logged     */
+};
+/* o->backend, or the first backend that can open a device; `null`, which
+ * draws nothing, only when it is named. An exit code, after one line on
+ * stderr when it is not HLC_DONE. */
+int hlc_machine_open(struct hlc_machine *out, const struct hlc_options *o);
+void hlc_machine_close(struct hlc_machine *machine);
+
+/* hl_plan_make with the options' pipeline. An exit code, after one line on
+ * stderr: HLC_BAD for what no change of machine would help, or what was asked
+ * for by an option; HLC_NO_DEVICE for a machine without the formats. */
+int hlc_plan_open(struct hl_plan *out, const struct hl_needs *needs,
+                  const struct hl_caps *caps, const struct hlc_options *o);
+#endif

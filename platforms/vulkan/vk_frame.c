@@ -1,0 +1,419 @@
+/* SPDX-License-Identifier: Zlib */
+/* Frames: what is recorded between two submits, in call order, in one command
+ * buffer. One records while the other executes. After a submit at most one is
+ * unfinished, so an embedder that fills two sets of dynamic buffers in turn
+ * never writes what is being read. */
+#include <string.h>
+#include "platforms/vulkan/vk.h"
+
+enum {
+    QUERIES = 256,           /* a pool: two timestamps a pass                */
+    CHUNK_BYTES = 4 << 20,   /* staging                                      */
+    SPARE_CHUNKS = 8,
+    STAGED_BYTES = 64 << 20  /* uploads alone are submitted from here on     */
+};
+
+/* ---- staging --------------------------------------------------------- */
+
+static void chunk_destroy(struct hlvk *v, struct hlvk_chunk *c)
+{
+    hlvk_buf_unmake(v, c->buffer, &c->memory);
+    hl_bk_free(v->device, c);
+}
+
+static enum hl_result chunk_make(struct hlvk *v, VkDeviceSize bytes,
+                                 struct hlvk_chunk **out)
+{
+    struct hlvk_chunk *c = v->spare;
+    enum hl_result result;
+    if (c && bytes <= CHUNK_BYTES) {
+        v->spare = c->next;
+        v->n_spare--;
+        *out = c;
+        return HL_OK;
+    }
+    c = hl_bk_alloc(v->device, sizeof *c);
+    if (!c)
+        return HL_ERR_MEMORY;
+    c->bytes = bytes < CHUNK_BYTES ? CHUNK_BYTES : bytes;
+    result = hlvk_buf_make(v, c->bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+                           HLVK_STAGE, &c->buffer, &c->memory);
+    if (result)
+        hl_bk_free(v->device, c);
+    else
+        *out = c;
+    return result;
+}
+
+static void chunks_release(struct hlvk *v, struct hlvk_frame *f)
+{
+    while (f->chunks) {
+        struct hlvk_chunk *c = f->chunks;
+        f->chunks = c->next;
+        if (c->bytes > CHUNK_BYTES || v->n_spare >= SPARE_CHUNKS) {
+            chunk_destroy(v, c);
+            continue;
+        }
+        c->used = 0;
+        c->next = v->spare;
+        v->spare = c;
+        v->n_spare++;
+    }
+    f->staged = 0;
+}
+
+enum hl_result hlvk_stage(struct hlvk *v, const void *data, size_t bytes,
+                          struct hlvk_frame **frame, VkBuffer *buffer,
+                          VkDeviceSize *offset)
+{
+    struct hlvk_frame *f = &v->frames[v->frame];
+    struct hlvk_chunk *c;
+    enum hl_result result = HL_OK;
+    /* Loading a scene holds little staging memory. A frame with passes is
+     * left whole: its timings belong together. */
+    if (f->staged > STAGED_BYTES && f->n_passes == 0)
+        result = hlvk_flush(v, false);
+    if (!result)
+        result = hlvk_begin(v, &f);
+    if (result)
+        return result;
+    c = f->chunks;
+    if (!c || c->bytes - c->used < bytes) {
+        result = chunk_make(v, bytes, &c);
+        if (result)
+            return result;
+        c->next = f->chunks;
+        f->chunks = c;
+    }
+    memcpy(c->memory.map + c->used, data, bytes);
+    *frame = f;
+    *buffer = c->buffer;
+    *offset = c->used;
+    c->used = (c->used + bytes + v->copy_align - 1) / v->copy_align *
+              v->copy_align;
+    if (c->used > c->bytes)
+        c->used = c->bytes;
+    f->staged += bytes;
+    return HL_OK;
+}
+
+/* ---- objects that wait ----------------------------------------------- */
+
+static void release(struct hlvk *v, struct hlvk_object *object)
+{
+    if (object->kind == 'b')
+        hlvk_buf_release(v, (struct hlvk_buf *)object);
+    else if (object->kind == 't')
+        hlvk_tex_release(v, (struct hlvk_tex *)object);
+    else
+        hlvk_prog_release(v, (struct hlvk_prog *)object);
+}
+
+static void collect(struct hlvk *v)
+{
+    struct hlvk_object **at = &v->garbage;
+    while (*at) {
+        struct hlvk_object *object = *at;
+        if (object->frame > v->completed) {
+            at = &object->next;
+            continue;
+        }
+        *at = object->next;
+        release(v, object);
+    }
+}
+
+void hlvk_destroy(void *state, char kind, uint32_t slot)
+{
+    struct hlvk *v = state;
+    struct hlvk_object *object = NULL;
+    if (kind == 'b' && v->bufs[slot]) {
+        object = &v->bufs[slot]->head;
+        v->bufs[slot] = NULL;
+    } else if (kind == 't' && v->texs[slot]) {
+        object = &v->texs[slot]->head;
+        v->texs[slot] = NULL;
+    } else if (kind == 'p' && v->progs[slot]) {
+        object = &v->progs[slot]->head;
+        v->progs[slot] = NULL;
+    }
+    if (!object)
+        return;
+    object->kind = kind;
+    /* The frame that records, or the last that was submitted. */
+    object->frame = v->serial;
+    if (object->frame <= v->completed) {
+        release(v, object);
+        return;
+    }
+    object->next = v->garbage;
+    v->garbage = object;
+}
+
+/* ---- timings --------------------------------------------------------- */
+
+enum hl_result hlvk_pass_reserve(struct hlvk *v, struct hlvk_frame *f)
+{
+    VkQueryPoolCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO
+    };
+    uint32_t pool = f->n_passes * 2 / QUERIES;
+    VkQueryPool made;
+    enum hl_result result;
+    if (v->tick_ms <= 0.0)
+        return HL_OK;
+    if (!hlvk_grow(v, &f->labels, &f->max_passes, f->n_passes + 1,
+                   sizeof *f->labels) ||
+        !hlvk_grow(v, &f->queries, &f->max_queries, pool + 1,
+                   sizeof *f->queries))
+        return HL_ERR_MEMORY;
+    if (pool == f->n_queries) {
+        info.queryType = VK_QUERY_TYPE_TIMESTAMP;
+        info.queryCount = QUERIES;
+        result = hlvk_check(v, vkCreateQueryPool(v->vk, &info, NULL, &made),
+                            "vkCreateQueryPool");
+        if (result)
+            return result;
+        f->queries[f->n_queries++] = made;
+    }
+    return HL_OK;
+}
+
+static void stamp(struct hlvk *v, struct hlvk_frame *f, uint32_t query)
+{
+    if (v->tick_ms > 0.0)
+        vkCmdWriteTimestamp2(f->cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                             f->queries[query / QUERIES], query % QUERIES);
+}
+
+void hlvk_pass_begin(struct hlvk *v, struct hlvk_frame *f, const char *label)
+{
+    uint32_t query = f->n_passes * 2;
+    if (v->tick_ms <= 0.0)
+        return;
+    f->labels[f->n_passes] = label;
+    if (query % QUERIES == 0)
+        vkCmdResetQueryPool(f->cmd, f->queries[query / QUERIES], 0, QUERIES);
+    stamp(v, f, query);
+}
+
+void hlvk_pass_end(struct hlvk *v, struct hlvk_frame *f)
+{
+    stamp(v, f, f->n_passes * 2 + 1);
+    f->n_passes++;
+}
+
+static void read_timings(struct hlvk *v, struct hlvk_frame *f)
+{
+    uint64_t t[QUERIES];
+    uint32_t i, n, done;
+    v->n_timings = 0;
+    if (v->tick_ms <= 0.0 || !hlvk_grow(v, &v->timings, &v->max_timings,
+                                        f->n_passes, sizeof *v->timings))
+        return;
+    for (done = 0; done < f->n_passes; done += n) {
+        n = f->n_passes - done < QUERIES / 2 ? f->n_passes - done
+                                             : QUERIES / 2;
+        if (vkGetQueryPoolResults(v->vk, f->queries[done * 2 / QUERIES], 0,
+                                  n * 2, n * 2 * sizeof *t, t, sizeof *t,
+                                  VK_QUERY_RESULT_64_BIT) != VK_SUCCESS)
+            return;
+        for (i = 0; i < n; i++) {
+            uint64_t ticks = (t[i * 2 + 1] - t[i * 2]) & v->tick_mask;
+            v->timings[done + i].label = f->labels[done + i];
+            v->timings[done + i].ms = (double)ticks * v->tick_ms;
+        }
+    }
+    v->n_timings = f->n_passes;
+}
+
+uint32_t hlvk_timings(void *state, struct hl_timing *out, uint32_t max)
+{
+    struct hlvk *v = state;
+    uint32_t n = v->n_timings < max ? v->n_timings : max;
+    if (n)
+        memcpy(out, v->timings, n * sizeof *out);
+    return v->n_timings;
+}
+
+/* ---- submit ---------------------------------------------------------- */
+
+enum hl_result hlvk_begin(struct hlvk *v, struct hlvk_frame **out)
+{
+    VkCommandBufferBeginInfo info = {
+        .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO
+    };
+    struct hlvk_frame *f = *out = &v->frames[v->frame];
+    enum hl_result result;
+    if (v->lost)
+        return HL_ERR_DEVICE_LOST;
+    if (f->recording)
+        return HL_OK;
+    info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+    result = hlvk_check(v, vkResetCommandPool(v->vk, f->pool, 0),
+                        "vkResetCommandPool");
+    if (!result)
+        result = hlvk_check(v, vkBeginCommandBuffer(f->cmd, &info),
+                            "vkBeginCommandBuffer");
+    if (result)
+        return result;
+    f->serial = ++v->serial;
+    f->recording = true;
+    f->n_passes = 0;
+    hlvk_sets_frame(v);
+    return HL_OK;
+}
+
+static enum hl_result retire(struct hlvk *v, struct hlvk_frame *f)
+{
+    enum hl_result result;
+    if (!f->submitted)
+        return HL_OK;
+    result = hlvk_check(v, vkWaitForFences(v->vk, 1, &f->fence, VK_TRUE,
+                                           UINT64_MAX), "vkWaitForFences");
+    if (!result)
+        result = hlvk_check(v, vkResetFences(v->vk, 1, &f->fence),
+                            "vkResetFences");
+    if (result)
+        return result;
+    f->submitted = false;
+    v->completed = f->serial;
+    chunks_release(v, f);
+    collect(v);
+    return HL_OK;
+}
+
+enum hl_result hlvk_wait(struct hlvk *v)
+{
+    uint32_t i;
+    enum hl_result result = HL_OK;
+    /* From the frame that records on: the other one is the younger. */
+    for (i = 0; i < HLVK_FRAMES && !result; i++)
+        result = retire(v, &v->frames[(v->frame + i) % HLVK_FRAMES]);
+    return result;
+}
+
+/* Textures' layouts are tracked as if all that was recorded had run; once it
+ * cannot, nothing on this device can be trusted. */
+static enum hl_result cannot_run(struct hlvk *v)
+{
+    v->lost = true;
+    hl_bk_log(v->device, HL_LOG_ERROR, HL_MSG_DEVICE,
+              "recorded work could not be submitted", NULL, NULL);
+    return HL_ERR_DEVICE_LOST;
+}
+
+static enum hl_result hand_over(struct hlvk *v, struct hlvk_frame *f)
+{
+    VkCommandBufferSubmitInfo cmd = {
+        .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO
+    };
+    VkSubmitInfo2 info = { .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2 };
+    cmd.commandBuffer = f->cmd;
+    info.commandBufferInfoCount = 1;
+    info.pCommandBufferInfos = &cmd;
+    f->recording = false;
+    if (hlvk_check(v, vkEndCommandBuffer(f->cmd), "vkEndCommandBuffer") ||
+        hlvk_check(v, vkQueueSubmit2(v->queue, 1, &info, f->fence),
+                   "vkQueueSubmit2"))
+        return cannot_run(v);
+    f->submitted = true;
+    v->frame = (v->frame + 1) % HLVK_FRAMES;
+    return HL_OK;
+}
+
+enum hl_result hlvk_flush(struct hlvk *v, bool wait)
+{
+    struct hlvk_frame *f = &v->frames[v->frame];
+    bool recorded = f->recording;
+    enum hl_result result = v->lost ? HL_ERR_DEVICE_LOST : HL_OK;
+    if (!result && recorded)
+        result = hand_over(v, f);
+    if (!result)
+        result = wait ? hlvk_wait(v) : retire(v, &v->frames[v->frame]);
+    if (!result && wait && recorded && f->n_passes)
+        read_timings(v, f);
+    return result;
+}
+
+enum hl_result hlvk_submit(void *state, bool wait)
+{
+    struct hlvk *v = state;
+    if (wait)
+        v->n_timings = 0;
+    return hlvk_flush(v, wait);
+}
+
+/* ---- open and close -------------------------------------------------- */
+
+static enum hl_result frame_open(struct hlvk *v, struct hlvk_frame *f)
+{
+    VkCommandPoolCreateInfo pool = {
+        .sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO
+    };
+    VkCommandBufferAllocateInfo cmd = {
+        .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO
+    };
+    VkFenceCreateInfo fence = { .sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO };
+    enum hl_result result;
+    pool.flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT;
+    pool.queueFamilyIndex = v->family;
+    result = hlvk_check(v, vkCreateCommandPool(v->vk, &pool, NULL, &f->pool),
+                        "vkCreateCommandPool");
+    if (result)
+        return result;
+    cmd.commandPool = f->pool;
+    cmd.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+    cmd.commandBufferCount = 1;
+    result = hlvk_check(v, vkAllocateCommandBuffers(v->vk, &cmd, &f->cmd),
+                        "vkAllocateCommandBuffers");
+    if (!result)
+        result = hlvk_check(v, vkCreateFence(v->vk, &fence, NULL, &f->fence),
+                            "vkCreateFence");
+    return result;
+}
+
+enum hl_result hlvk_frames_open(struct hlvk *v)
+{
+    uint32_t i;
+    enum hl_result result = HL_OK;
+    for (i = 0; i < HLVK_FRAMES && !result; i++)
+        result = frame_open(v, &v->frames[i]);
+    return result;
+}
+
+static void frame_close(struct hlvk *v, struct hlvk_frame *f)
+{
+    uint32_t i;
+    /* Recorded but never submitted work goes with its pool. */
+    vkDestroyCommandPool(v->vk, f->pool, NULL);
+    vkDestroyFence(v->vk, f->fence, NULL);
+    for (i = 0; i < f->n_queries; i++)
+        vkDestroyQueryPool(v->vk, f->queries[i], NULL);
+    hl_bk_free(v->device, f->queries);
+    hl_bk_free(v->device, f->labels);
+    chunks_release(v, f);
+}
+
+void hlvk_frames_close(struct hlvk *v)
+{
+    uint32_t i;
+    /* Only our own work is waited for: the queue may be an embedder's. A
+     * lost device gives errors here, and may be taken apart all the same. */
+    for (i = 0; i < HLVK_FRAMES; i++)
+        if (v->frames[i].submitted)
+            vkWaitForFences(v->vk, 1, &v->frames[i].fence, VK_TRUE,
+                            UINT64_MAX);
+    v->completed = v->serial;
+    for (i = 0; i < HLVK_FRAMES; i++)
+        frame_close(v, &v->frames[i]);
+    while (v->spare) {
+        struct hlvk_chunk *c = v->spare;
+        v->spare = c->next;
+        chunk_destroy(v, c);
+    }
+    hl_bk_free(v->device, v->timings);
+    collect(v);
+    if (v->readback.buffer)
+        hlvk_buf_unmake(v, v->readback.buffer, &v->readback.memory);
+}

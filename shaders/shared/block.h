@@ -1,0 +1,129 @@
+/* SPDX-License-Identifier: Zlib */
+#ifndef HL_BLOCK_H
+#define HL_BLOCK_H
+/* What stages read: bindings, specialisation constants and uniform blocks,
+ * the same text for C (to fill) and GLSL (to read). Blocks hold vec4 and
+ * mat4 only, so that std140 and C agree without padding rules.
+ *
+ * An embedder's own stage includes this file (through inferred.glsl) and
+ * may read every block; slot 2 is its own to lay out. */
+#include "shaders/shared/lang.h"
+
+/* Uniform slots (set 0). */
+#define HL_SLOT_FRAME 0
+#define HL_SLOT_OBJECT 1
+#define HL_SLOT_MATERIAL 2
+#define HL_SLOT_LIGHTS 3
+/* Storage slots (set 2). */
+#define HL_SLOT_LIST 0
+#define HL_SLOT_TILES 1
+/* Texture slots (set 1) of the light pass ... */
+#define HL_TEX_DEPTH 0
+#define HL_TEX_NORMAL 1
+#define HL_TEX_EXPONENT 2
+/* ... and of passes that draw meshes. */
+#define HL_TEX_LIGHT 0
+#define HL_TEX_DSF 1
+#define HL_TEX_BASE 2
+#define HL_TEX_METAL_ROUGH 3
+#define HL_TEX_NORMAL_MAP 4
+#define HL_TEX_EMISSION 5
+#define HL_TEX_MESH_COUNT 6
+
+/* Vertex attributes. */
+#define HL_ATTR_POSITION 0
+#define HL_ATTR_NORMAL 1
+#define HL_ATTR_TANGENT 2   /* w = handedness * (1 + normal group)           */
+#define HL_ATTR_UV 3
+#define HL_ATTR_COLOR 4
+
+/* Specialisation constants. */
+#define HL_SPEC_SPECULAR 0  /* HL_SPECULAR_*                                 */
+#define HL_SPEC_FALLOFF 1   /* 1 smooth, 2 inverse square, 3 by light        */
+#define HL_SPEC_KINDS 2     /* 0 points only, 1 spots and directional too    */
+#define HL_SPEC_BATCH 3     /* lights a draw, 1..HL_BATCH_MAX                */
+#define HL_SPEC_DSF 4       /* HL_DSF_*                                      */
+#define HL_SPEC_MASK 5      /* 1: discard where alpha < cutoff               */
+#define HL_SPEC_TEXTURES 6  /* HL_TEXTURED_* bits                            */
+#define HL_SPEC_BASE 7      /* forward: 1 adds emission and ambient          */
+#define HL_SPEC_TWO_SIDED 8 /* 1: a visible back face turns its normal over  */
+
+#define HL_SPECULAR_NONE 0
+#define HL_SPECULAR_CONSTANT 1
+#define HL_SPECULAR_CHANNEL 2
+#define HL_DSF_OFF 0        /* plain bilinear                                */
+#define HL_DSF_SLOPE 1
+#define HL_DSF_CONSTANT 2   /* the paper's threshold, for comparison         */
+#define HL_DSF_EXACT 3      /* L-buffer as large as the frame: one fetch     */
+#define HL_TEXTURED_BASE 1
+#define HL_TEXTURED_METAL_ROUGH 2
+#define HL_TEXTURED_NORMAL 4
+#define HL_TEXTURED_EMISSION 8
+
+/* Lights: two vec4 for smooth or inverse-square points, four for all kinds.
+ * [0] view position, 1/r^2   [1] colour, 1 = inverse square else smooth
+ * [2] view direction of travel, spot scale   [3] spot offset, directional,
+ * and free. */
+#define HL_BATCH_MAX 16
+#define HL_LIGHT_VEC4S 4
+#define HL_POINT_VEC4S 2
+
+#ifdef HL_GLSL
+layout(set = 0, binding = HL_SLOT_FRAME, std140) uniform hl_frame_block {
+#else
+struct hl_frame_block {
+#endif
+    /* View position of a pixel centre p at depth z > 0: ((p.x * x + z) * z,
+     * (p.y * y + w) * z, -z), of the frame and of the L-buffer. */
+    hl_vec4 ray, ray_light;
+    hl_vec4 depth;      /* view z = x / (d + y); 1 / far; far                */
+    hl_vec4 ambient;    /* rgb; w: scale of stored light (stored * w = light) */
+    hl_vec4 light_size; /* L-buffer texels x, y; L texels a frame pixel x, y */
+    hl_vec4 dsf;        /* q m, k, c, tap distance in L texels               */
+    hl_vec4 dsf_id;     /* 1 / id steps, half an id step, constant tau, 0    */
+    hl_vec4 misc;       /* exponent, tile size px, tiles a row, 0            */
+#ifdef HL_GLSL
+} hl_frame;
+layout(set = 0, binding = HL_SLOT_OBJECT, std140) uniform hl_object_block {
+#define hl_mat4 mat4
+#else
+};
+typedef struct { hl_vec4 column[4]; } hl_mat4;
+struct hl_object_block {
+#endif
+    hl_mat4 clip;       /* model to clip                                     */
+    hl_mat4 normal;     /* model to view, cofactor 3 x 3: normals            */
+    hl_mat4 tangent;    /* model to view 3 x 3: tangents                     */
+    hl_vec4 ids;        /* id base, object index, list offset, list count    */
+#ifdef HL_GLSL
+} hl_object;
+#else
+};
+#endif
+
+#if !defined(HL_GLSL) || !defined(HL_OWN_MATERIAL_BLOCK)
+#ifdef HL_GLSL
+layout(set = 0, binding = HL_SLOT_MATERIAL, std140) uniform hl_material_block {
+#else
+struct hl_material_block {
+#endif
+    hl_vec4 base;       /* linear factor, alpha                              */
+    hl_vec4 params;     /* metallic, roughness, normal scale, alpha cutoff   */
+    hl_vec4 emission;   /* rgb, specular weight (1, or 0 for none)           */
+    hl_vec4 albedo;     /* rho of the factors, alpha                         */
+    hl_vec4 specular;   /* ks of the factors, exponent n                     */
+#ifdef HL_GLSL
+} hl_material;
+#else
+};
+#endif
+#endif
+
+#ifdef HL_GLSL
+layout(set = 0, binding = HL_SLOT_LIGHTS, std140) uniform hl_lights_block {
+    vec4 data[HL_BATCH_MAX * HL_LIGHT_VEC4S];
+} hl_lights;
+#else
+enum { HL_LIGHTS_BYTES = HL_BATCH_MAX * HL_LIGHT_VEC4S * 16 };
+#endif
+#endif
