@@ -4,7 +4,9 @@
 #            make check        include arrows, undefined symbols, headers alone
 # config=debug|release|sanitize|coverage
 config ?= release
-CC ?= gcc
+ifeq ($(origin CC),default)
+CC := gcc
+endif
 AR ?= ar
 PYTHON ?= python3
 B := build/$(config)
@@ -81,6 +83,13 @@ tests: $(TESTS)
 $(B)/tests/%: $(B)/obj/tests/%.o $(TEST_LIB) $(TOOL_LIBS)
 	@mkdir -p $(@D)
 	$(CC) $(ALL_LDFLAGS) -o $@ $^ -lcmocka $(VULKAN_LIBS) $(HOST_LIBS) -ldl
+# Stages of the tests' own, compiled as an engine would: tests/NAME.frag is
+# included as NAME_frag.x.
+TEST_STAGES := $(patsubst tests/%.frag,$(GEN)/%_frag.x,$(wildcard tests/*.frag))
+$(GEN)/%_frag.x: tests/%.frag $(wildcard shaders/*.glsl shaders/shared/*.h)
+	@mkdir -p $(GEN)
+	glslangValidator -V -g0 --target-env vulkan1.1 -Ishaders -I. -x -o $@ $< >/dev/null
+$(call objs,tests/*.c): | $(TEST_STAGES)
 $(B)/tests/embed: $(B)/obj/tests/embed.o $(LIBS)
 	@mkdir -p $(@D)
 	$(CC) $(ALL_LDFLAGS) -o $@ $< $(call lib,halflight-vulkan) $(call lib,halflight) $(VULKAN_LIBS) -lm

@@ -110,8 +110,10 @@ struct hl_draw *hl_draw_mesh(struct hl_renderer *r, const struct hl_frame *f,
     bind_uniform(r, d, HL_SLOT_MATERIAL, v->material, v->material_bytes);
     if (kind == PROG_BLENDED)
         bind_list(r, d);
-    d->textures = r->textures[visible];
-    d->n_textures = HL_TEX_MESH_COUNT;
+    bool lit = kind == PROG_MATERIAL || kind == PROG_REJECT;
+    d->textures = r->textures[visible][lit];
+    if (lit || r->surfaces[it->surface].textures)
+        d->n_textures = HL_TEX_MESH_COUNT;
     return d;
 }
 
@@ -184,8 +186,8 @@ static void draw_tiles(struct hl_renderer *r, const struct hl_frame *f)
         struct hl_rect rect = { (int32_t)(t % g->nx * g->tile),
                                 (int32_t)(t / g->nx * g->tile),
                                 (int32_t)g->tile, (int32_t)g->tile };
-        for (uint32_t i = 0; i < n; i += HL_BATCH_MAX) {
-            uint32_t k = n - i < HL_BATCH_MAX ? n - i : HL_BATCH_MAX;
+        for (uint32_t i = 0; i < n; i += r->plan.batch) {
+            uint32_t k = n - i < r->plan.batch ? n - i : r->plan.batch;
             draw_batch(r, f, &rect, r->refs + first + i, k, i > 0);
         }
     }

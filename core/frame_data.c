@@ -3,6 +3,7 @@
 #include <string.h>
 #include "core/renderer.h"
 #include "core/vec.h"
+#include "shaders/shared/pack.h"
 #include "shaders/shared/shade.h"
 #include "hal/backend.h"
 #include "hal/text.h"
@@ -147,16 +148,12 @@ static void put_frame_block(struct hl_renderer *r, const struct hl_frame *f)
     float lw = p->light_width ? (float)p->light_width : w;
     float lh = p->light_height ? (float)p->light_height : h;
     float ty = c->tan_half_y, tx = ty * w / h;
-    b.ray = ray(tx, ty, w, h);
     b.ray_light = ray(tx, ty, lw, lh);
     depth_terms(r, c, &b.depth.x, &b.depth.y);
     b.depth.z = 1.0f / c->far;
     b.depth.w = c->far;
     b.ambient = hl_v4(f->ambient[0], f->ambient[1], f->ambient[2],
                       p->light_scale);
-    b.light_size = hl_v4(lw, lh, lw / w, lh / h);
-    b.dsf = hl_v4(c->far / 65535.0f, p->dsf_k, p->dsf_c, 1.0f);
-    b.dsf_id = hl_v4(1.0f / 65535.0f, 0.5f / 65535.0f, p->dsf_tau, 0);
     b.misc = hl_v4(p->exponent, (float)r->grid.tile, (float)r->grid.nx, 0);
     r->frame_offset = hl_arena_put(&r->arena, &b, sizeof b);
 }
@@ -191,7 +188,11 @@ void hl_gather_object(struct hl_renderer *r, const struct hl_frame *f,
     hl_cofactor3(cof, mv);
     copy4(&b.clip, clip);
     copy4(&b.normal, cof);
-    copy4(&b.tangent, mv);
+    copy4(&b.model_view, mv);
+    float n = it->material ? hl_roughness_exponent(it->material->roughness)
+                           : 1.0f;
+    b.flat_ids = hl_v4(hl_exponent_encode(n), hl_det3(mv) < 0 ? -1.0f : 1.0f,
+                       0, 0);
     b.ids = hl_v4((float)it->id_base, (float)v->item, (float)v->list_first,
                   (float)v->list_count);
     v->object = hl_arena_put(&r->arena, &b, sizeof b);
@@ -278,11 +279,12 @@ static uint32_t cull(struct hl_renderer *r, const struct hl_frame *f,
 static void put_textures(struct hl_renderer *r, const struct hl_item *it,
                          uint32_t visible)
 {
-    struct hl_texture_binding *t = r->textures[visible];
+    struct hl_texture_binding (*t)[HL_TEX_MESH_COUNT] = r->textures[visible];
     memset(t, 0, sizeof r->textures[visible]);
-    t[HL_TEX_LIGHT].tex = r->target[HL_ROLE_LIGHT];
-    t[HL_TEX_DSF].tex = r->target[HL_ROLE_DSF];
-    memcpy(&t[HL_TEX_BASE], it->texture, sizeof it->texture);
+    t[1][HL_TEX_LIGHT].tex = r->target[HL_ROLE_LIGHT];
+    t[1][HL_TEX_DSF].tex = r->target[HL_ROLE_DSF];
+    memcpy(&t[0][HL_TEX_BASE], it->texture, sizeof it->texture);
+    memcpy(&t[1][HL_TEX_BASE], it->texture, sizeof it->texture);
 }
 
 /* The lights that touch a blended item, as a list for its one draw. */

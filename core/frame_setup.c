@@ -107,6 +107,29 @@ static void spec(struct hl_prog_desc *p, uint32_t id, uint32_t value)
     p->spec[p->n_specs++] = s;
 }
 
+static void spec_float(struct hl_prog_desc *p, uint32_t id, float value)
+{
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    spec(p, id, bits);
+}
+
+/* Everything of a plan that a stage which reads the L-buffer needs. */
+static void inferred_specs(const struct hl_plan *plan, struct hl_prog_desc *p)
+{
+    float lw = (float)plan->light_width, lh = (float)plan->light_height;
+    spec(p, HL_SPEC_DSF, plan->dsf);
+    spec(p, HL_SPEC_LIGHT_BITS, plan->light_bits);
+    spec_float(p, HL_SPEC_LIGHT_WIDTH, lw);
+    spec_float(p, HL_SPEC_LIGHT_HEIGHT, lh);
+    spec_float(p, HL_SPEC_RATIO_X, lw / (float)plan->width);
+    spec_float(p, HL_SPEC_RATIO_Y, lh / (float)plan->height);
+    spec_float(p, HL_SPEC_DSF_K, plan->dsf_k);
+    spec_float(p, HL_SPEC_DSF_C, plan->dsf_c);
+    spec_float(p, HL_SPEC_DSF_TAU, plan->dsf_tau);
+    spec_float(p, HL_SPEC_LIGHT_SCALE, plan->light_scale);
+}
+
 static void light_specs(const struct hl_plan *plan, struct hl_prog_desc *p,
                         uint32_t batch)
 {
@@ -138,8 +161,8 @@ static void to_gbuffer(const struct hl_plan *plan, struct hl_prog_desc *p,
 {
     bool channel = plan->specular == HL_SPECULAR_CHANNEL;
     p->label = "geometry";
-    p->vertex.builtin = full ? HL_SHADER_MESH_FULL_ID_VERT
-                             : HL_SHADER_MESH_PLAIN_ID_VERT;
+    p->vertex.builtin = full ? HL_SHADER_MESH_GBUFFER_FULL_VERT
+                             : HL_SHADER_MESH_GBUFFER_VERT;
     if (channel)
         p->fragment.builtin = full ? HL_SHADER_GBUFFER_FULL_EXP_FRAG
                                    : HL_SHADER_GBUFFER_PLAIN_EXP_FRAG;
@@ -167,15 +190,15 @@ static void to_material(const struct hl_plan *plan, struct hl_prog_desc *p,
     to_frame(plan, p);
     p->label = "material";
     p->vertex.builtin = full ? HL_SHADER_MESH_UV_ID_VERT
-                             : HL_SHADER_MESH_ID_VERT;
+                             : HL_SHADER_MESH_MATERIAL_VERT;
     p->fragment.builtin = full ? HL_SHADER_MATERIAL_FULL_FRAG
                                : HL_SHADER_MATERIAL_PLAIN_FRAG;
     if (s->own_material) {
-        p->vertex.builtin = HL_SHADER_MESH_FULL_ID_VERT;
+        p->vertex.builtin = HL_SHADER_MESH_OWN_VERT;
         p->fragment.builtin = HL_SHADER_NONE;
         p->fragment.code = s->own_material;
     }
-    spec(p, HL_SPEC_DSF, plan->dsf);
+    inferred_specs(plan, p);
 }
 
 static void to_forward(const struct hl_plan *plan, struct hl_prog_desc *p,
@@ -185,8 +208,8 @@ static void to_forward(const struct hl_plan *plan, struct hl_prog_desc *p,
     bool base = kind != PROG_MORE;
     uint32_t batch = plan->batch;
     p->label = base ? "forward" : "forward more";
-    p->vertex.builtin = full ? HL_SHADER_MESH_FULL_VERT
-                             : HL_SHADER_MESH_PLAIN_VERT;
+    p->vertex.builtin = full ? HL_SHADER_MESH_FORWARD_FULL_VERT
+                             : HL_SHADER_MESH_FORWARD_VERT;
     p->fragment.builtin = full ? HL_SHADER_FORWARD_FULL_FRAG
                                : HL_SHADER_FORWARD_PLAIN_FRAG;
     if (kind == PROG_BLENDED)
@@ -217,7 +240,7 @@ static void to_inspect(const struct hl_plan *plan, struct hl_prog_desc *p,
         p->fragment.builtin = full ? HL_SHADER_REJECT_FULL_FRAG
                                    : HL_SHADER_REJECT_PLAIN_FRAG;
         p->color[0] = HL_FORMAT_R8_UNORM;
-        spec(p, HL_SPEC_DSF, plan->dsf);
+        inferred_specs(plan, p);
     }
 }
 
@@ -263,19 +286,22 @@ enum hl_result hl_screen_program(struct hl_renderer *r,
     struct hl_prog_desc p;
     memset(&p, 0, sizeof p);
     p.label = "light";
-    p.vertex.builtin = HL_SHADER_SCREEN_VERT;
+    p.vertex.builtin = fragment == HL_SHADER_LIGHT_FLAT_FRAG
+                       ? HL_SHADER_SCREEN_FLAT_VERT : HL_SHADER_SCREEN_VERT;
     p.fragment.builtin = fragment;
     p.n_colors = 1;
     p.color[0] = color;
     p.blend = blend;
     light_specs(&r->plan, &p, batch);
+    spec_float(&p, HL_SPEC_LIGHT_SCALE, r->plan.light_scale);
     return hl_prog_create(r->device, out, &p);
 }
 
-/* Sizes 4, 8, 12, 16 for tiles; RECTS has its one batch size. */
+/* Quarters of the largest batch for tiles; RECTS has its one size. */
 static uint32_t light_size(const struct hl_plan *p, uint32_t i)
 {
-    return p->light_path == HL_LIGHT_PATH_RECTS ? p->batch : (i + 1) * 4;
+    return p->light_path == HL_LIGHT_PATH_RECTS
+           ? p->batch : (p->batch * (i + 1) + 3) / LIGHT_SIZES;
 }
 
 hl_prog hl_light_program(struct hl_renderer *r, uint32_t lights, bool add,
@@ -300,7 +326,8 @@ static enum hl_result make_light_programs(struct hl_renderer *r)
     for (uint32_t i = 0; i < (rects ? 1 : LIGHT_SIZES); i++)
         for (int add = rects ? 1 : 0; add < 2; add++) {
             enum hl_result e = hl_screen_program(
-                r, HL_SHADER_LIGHT_BATCH_FRAG, f,
+                r, p->light_flat ? HL_SHADER_LIGHT_FLAT_FRAG
+                                 : HL_SHADER_LIGHT_BATCH_FRAG, f,
                 add ? HL_BLEND_ADD : HL_BLEND_OFF, light_size(p, i),
                 &r->light_prog[i][add]);
             if (e != HL_OK)
@@ -335,7 +362,8 @@ static enum hl_result make_targets(struct hl_renderer *r, bool readback)
         const struct hl_plan_target *t = &r->plan.target[i];
         struct hl_tex_desc d = { labels[t->role], t->format, t->width,
                                  t->height, t->samples, 1,
-                                 HL_TEX_TARGET | HL_TEX_SAMPLED };
+                                 HL_TEX_TARGET | HL_TEX_SAMPLED,
+                                 t->sample_as };
         bool needed = t->role == HL_ROLE_LIGHT_DEPTH && r->plan.tile_depth;
         if (t->samples == 1 && (readback || needed))
             d.usage |= HL_TEX_READBACK;

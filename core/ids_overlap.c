@@ -10,11 +10,11 @@ struct entry {
 };
 
 /* Floats in order as unsigned numbers: negative ones fall as their bits rise,
- * so all bits turn over; of the others just the sign. */
+ * so all bits turn over; of the others just the sign. -0 comes before +0,
+ * which the sweep does not mind. */
 static uint32_t ordered_bits(float value)
 {
     uint32_t bits;
-    value += 0.0f; /* -0 sorts as +0 */
     memcpy(&bits, &value, sizeof bits);
     return bits & 0x80000000u ? ~bits : bits | 0x80000000u;
 }

@@ -15,8 +15,9 @@
  *
  * Nothing in the caller's arrays is trusted: see struct hl_mesh_stats for
  * what is dropped or replaced. Time and memory grow linearly with the mesh
- * (hashing; expected time). The result depends on the input alone: not on
- * the machine, its byte order or its mathematics library. */
+ * (hashing; expected time). The result depends on the input alone, not on the
+ * machine, its byte order or its mathematics library, where the compiler
+ * rounds every operation once (-ffp-contract=off, no x87). */
 #include "hal/hal.h"
 
 /* Indices and vertices a mesh may have; more is HL_ERR_LIMIT. */
@@ -31,7 +32,8 @@
  * (a faceted cone's tip would need an id a facet): edges still count. */
 #define HL_MESH_MAX_FAN 8u
 /* On one edge, normals that differ are compared pairwise with the latest 16
- * before them; beyond that groups may stay apart, never join wrongly. */
+ * before them, and only their groups are neighbours; beyond that groups may
+ * stay apart, never join wrongly. Equal normals always join. */
 #define HL_MESH_MAX_WINGS 16u
 
 /* The caller's arrays, borrowed for the call; no alignment is asked. Every

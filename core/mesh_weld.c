@@ -100,8 +100,6 @@ uint32_t hl_weld_add(struct hl_weld *weld, const uint32_t *key,
 
 void hl_weld_close(struct hl_weld *weld)
 {
-    if (!weld->hooks)
-        return;
     hl_mem_free(weld->hooks, weld->keys);
     hl_mem_free(weld->hooks, weld->slots);
     weld->keys = weld->slots = NULL;

@@ -50,6 +50,7 @@ static enum hl_refusal choose_gbuffer(struct hl_plan *p,
     t->read_by = 1u << HL_PASS_LIGHT;
     hl_plan_why(p, HL_WHY_NORMAL_FORMAT, (float)normal, t->error, 0, 0);
     t = hl_plan_add_target(p, HL_ROLE_DSF, normal, w, h, 1);
+    t->sample_as = HL_FORMAT_R32_UINT;
     t->error = ask->n.far / 65535.0f * 0.5f;
     t->read_by = 1u << HL_PASS_MATERIAL;
     hl_plan_why(p, HL_WHY_DSF_FORMAT, (float)normal, t->error, ask->n.far, 0);
@@ -87,12 +88,25 @@ static void choose_exponent(struct hl_plan *p, const struct hl_ask *ask)
 
 /* ---- light pass --------------------------------------------------------- */
 
-enum { TILE = 32, TILE_DRAWS_BATCH = 16 };
+enum { TILE = 16, TILE_DRAWS_BATCH = 14 };
 
 /* Lists hold the lights whose bounds touch a tile: more than touch a pixel.
  * Shares measured on the paper's figure 7 and 8 scenes (docs/results.md):
  * with depth bounds 1.35 times, without 1.7. */
 static double list_share(bool tile_depth) { return tile_depth ? 1.35 : 1.7; }
+
+/* A light by the cheaper of uniforms and flat varyings. */
+static bool flat_cheaper(const struct hl_ask *ask)
+{
+    const struct hl_cost_model *c = &ask->caps->cost;
+    return c->light_flat_ns > 0 && c->light_flat_ns < c->light_ns;
+}
+
+static double light_ns(const struct hl_ask *ask)
+{
+    const struct hl_cost_model *c = &ask->caps->cost;
+    return (double)(flat_cheaper(ask) ? c->light_flat_ns : c->light_ns);
+}
 
 static double path_cost(const struct hl_plan *p, const struct hl_ask *ask,
                         enum hl_light_path path, bool tile_depth)
@@ -111,13 +125,13 @@ static double path_cost(const struct hl_plan *p, const struct hl_ask *ask,
         double draws = ceil((double)ask->n.n_lights / p->batch);
         double shaded = p->batch > 1 ? 1.5 * lights : lights;
         return draws * (double)c->draw_ns + pixels * shaded *
-               ((double)c->light_ns + (double)(c->blend_ns + c->pixel_ns +
+               (light_ns(ask) + (double)(c->blend_ns + c->pixel_ns +
                 2 * c->fetch_ns) / p->batch);
     }
     if (path == HL_LIGHT_PATH_TILES)
         return base + depth + tiles * ceil((listed + 1) / TILE_DRAWS_BATCH) *
                (double)c->draw_ns + pixels * (listed + 2) *
-               (double)c->light_ns;
+               light_ns(ask);
     return base + depth + pixels * listed * (double)c->light_gather_ns;
 }
 
@@ -148,8 +162,14 @@ static double choose_path(struct hl_plan *p, const struct hl_ask *ask)
     hl_plan_why(p, asked ? HL_WHY_PATH_ASKED : HL_WHY_PATH_CHEAPEST,
                 (float)p->light_path, (float)(cost[1] * 1e-6),
                 (float)(cost[2] * 1e-6), (float)(cost[3] * 1e-6));
-    if (p->light_path != HL_LIGHT_PATH_RECTS)
-        p->batch = TILE_DRAWS_BATCH;
+    uint32_t most = HL_BATCH_MAX;
+    p->light_flat = flat_cheaper(ask) &&
+                    p->light_path != HL_LIGHT_PATH_LISTS;
+    if (p->light_flat)
+        most = (uint32_t)(HL_FLAT_VEC4S / (p->kinds ? HL_LIGHT_VEC4S
+                                                    : HL_POINT_VEC4S));
+    if (p->light_path != HL_LIGHT_PATH_RECTS || p->batch > most)
+        p->batch = most;
     if (p->tile_depth)
         hl_plan_why(p, HL_WHY_TILE_DEPTH, (float)p->tile, 0, 0, 0);
     return best;
@@ -166,6 +186,26 @@ static uint32_t light_blends(const struct hl_plan *p, const struct hl_ask *ask)
     return 1 + (uint32_t)(p->batch > 1 ? n * 1.5f / (float)p->batch : n);
 }
 
+/* The L-buffer's texel as words. */
+static void light_bits(struct hl_plan *p, struct hl_plan_target *t)
+{
+    const struct hl_format_info *f = hl_format_info(t->format);
+    bool wide = f->bits[0] == 32;
+    t->sample_as = wide ? HL_FORMAT_RGBA32_UINT
+                   : f->bytes == 4 ? HL_FORMAT_R32_UINT : HL_FORMAT_RG32_UINT;
+    p->light_bits = wide ? HL_BITS_FLOAT
+                    : f->bits[0] == 8 ? HL_BITS_UNORM8
+                    : f->kind == HL_KIND_FLOAT ? HL_BITS_HALF
+                                               : HL_BITS_UNORM16;
+}
+
+/* Formats that the material pass knows how to take apart. */
+static bool known_light_format(enum hl_format f)
+{
+    return f == HL_FORMAT_RGBA16_FLOAT || f == HL_FORMAT_RGBA16_UNORM ||
+           f == HL_FORMAT_RGBA32_FLOAT || f == HL_FORMAT_RGBA8_UNORM;
+}
+
 static enum hl_refusal choose_light_format(struct hl_plan *p,
                                            const struct hl_ask *ask)
 {
@@ -176,7 +216,9 @@ static enum hl_refusal choose_light_format(struct hl_plan *p,
     int use = HL_USE_TARGET | HL_USE_SAMPLED | HL_USE_BLEND;
     enum hl_format best = HL_FORMAT_NONE;
     enum hl_format asked = ask->n.light_format;
-    if (asked != HL_FORMAT_NONE && !hl_format_usable(ask->caps, asked, use, 1))
+    if (asked != HL_FORMAT_NONE &&
+        (!known_light_format(asked) ||
+         !hl_format_usable(ask->caps, asked, use, 1)))
         return HL_REFUSED_LIGHT_FORMAT;
     bool unorm = hl_format_info(asked)->kind == HL_KIND_UNORM;
     if (asked != HL_FORMAT_NONE && unorm && ask->n.peak <= 0)
@@ -205,6 +247,7 @@ static enum hl_refusal choose_light_format(struct hl_plan *p,
     struct hl_plan_target *t = hl_plan_add_target(p, HL_ROLE_LIGHT, best,
                                                   p->light_width,
                                                   p->light_height, 1);
+    light_bits(p, t);
     t->error = hl_accumulation_error(best, blends);
     t->read_by = 1u << HL_PASS_MATERIAL;
     p->light_error = t->error;

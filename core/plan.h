@@ -64,6 +64,7 @@ struct hl_plan_reason { enum hl_reason why; float arg[4]; };
 struct hl_plan_target {
     enum hl_role role;
     enum hl_format format;
+    enum hl_format sample_as;      /* as hl_tex_desc's; NONE = format        */
     uint32_t width, height, samples;
     uint32_t read_by;              /* bits 1 << enum hl_pass_role            */
     uint64_t bytes;
@@ -99,11 +100,13 @@ struct hl_plan {
     uint32_t falloff, kinds;       /* values of HL_SPEC_FALLOFF, _KINDS      */
     enum hl_light_path light_path;
     uint32_t batch, tile;
+    bool light_flat;               /* lights go down as flat varyings        */
     bool tile_depth;               /* lists bounded by depth read back       */
     bool scissor;
     bool reversed_depth;           /* near is 1, far is 0                    */
     uint32_t dsf;                  /* HL_DSF_* of block.h                    */
     float dsf_k, dsf_c, dsf_tau;
+    uint32_t light_bits;           /* HL_BITS_* of block.h                   */
     float light_scale;             /* light = stored * light_scale           */
     float far;                     /* the depth that DSF stores as 1         */
 

@@ -52,7 +52,8 @@ struct hl_renderer {
     uint32_t n_spheres;
     struct hl_visible *visible;    /* opaque first, then blended             */
     uint32_t n_opaque, n_visible;
-    struct hl_texture_binding (*textures)[HL_TEX_MESH_COUNT];
+    /* [0] for passes that make the light, [1] for those that read it. */
+    struct hl_texture_binding (*textures)[2][HL_TEX_MESH_COUNT];
     struct hl_texture_binding light_textures[3];
     struct hl_draw *draws;
     uint32_t n_draws;

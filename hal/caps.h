@@ -65,6 +65,7 @@ struct hl_cost_model {
     float fetch_ns;          /* one texel fetch of 4 to 8 bytes              */
     float blend_ns;          /* blending 8 bytes a pixel                     */
     float light_ns;          /* one light a pixel, data at a uniform address */
+    float light_flat_ns;     /* the same, data in flat varyings              */
     float light_gather_ns;   /* one light a pixel, address differs by pixel  */
     float readback_ns;       /* reading one 4-byte texel back to the host    */
     float sync_ns;           /* submit and wait                              */

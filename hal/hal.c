@@ -380,6 +380,17 @@ static enum hl_result check_tex(struct hl_device *d, struct hl_tex_desc *t)
         return hl_refuse_number(d, HL_ERR_INVALID, HL_MSG_ARGUMENT,
                                 "hl_tex_desc.height", t->height,
                                 " is not in 1..max_tex_dim");
+    if (t->sample_as == HL_FORMAT_NONE)
+        t->sample_as = t->format;
+    if ((unsigned)t->sample_as >= HL_FORMAT_COUNT ||
+        (t->sample_as != t->format &&
+         (hl_format_info(t->sample_as)->bytes !=
+          hl_format_info(t->format)->bytes ||
+          hl_format_info(t->format)->kind == HL_KIND_DEPTH ||
+          hl_format_info(t->sample_as)->kind == HL_KIND_DEPTH)))
+        return hl_refuse(d, HL_ERR_INVALID, HL_MSG_FORMAT,
+                         "hl_tex_desc.sample_as",
+                         "not a colour format of the same texel size");
     if (t->mips > full_mips(t->width, t->height) ||
         (t->mips > 1 && t->samples > 1))
         return hl_refuse_number(d, HL_ERR_INVALID, HL_MSG_ARGUMENT,
@@ -388,7 +399,8 @@ static enum hl_result check_tex(struct hl_device *d, struct hl_tex_desc *t)
     const struct hl_format_caps *f = &d->caps.format[t->format];
     bool target = (t->usage & HL_TEX_TARGET) != 0;
     if ((target && !(f->use & HL_USE_TARGET)) ||
-        ((t->usage & HL_TEX_SAMPLED) && !(f->use & HL_USE_SAMPLED)))
+        ((t->usage & HL_TEX_SAMPLED) &&
+         !(d->caps.format[t->sample_as].use & HL_USE_SAMPLED)))
         return hl_refuse(d, HL_ERR_UNSUPPORTED, HL_MSG_FORMAT,
                          hl_format_info(t->format)->name,
                          "this device lacks the usage asked for");

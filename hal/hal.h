@@ -115,6 +115,10 @@ struct hl_tex_desc {
     uint32_t samples;        /* 1, 2, 4, 8; 0 = 1                            */
     uint32_t mips;           /* levels; 0 = 1                                */
     uint32_t usage;          /* HL_TEX_* bits; 0 = SAMPLED                   */
+    /* Format as which shaders sample it: the same bytes reinterpreted, as a
+     * texture view or a console's remap does. Equal texel size, not depth;
+     * 0 = format. */
+    enum hl_format sample_as;
 };
 
 /* Contents are undefined until written or cleared by a pass. */
@@ -164,7 +168,7 @@ enum hl_attr_format {
 
 enum { HL_MAX_ATTRS = 8, HL_MAX_STREAMS = 4, HL_MAX_COLORS = 8,
        HL_MAX_UNIFORMS = 4, HL_MAX_STORAGE = 2, HL_MAX_TEXTURES = 12,
-       HL_MAX_SPECS = 16 };
+       HL_MAX_SPECS = 24 };
 
 /* Attribute `location` is its index in the array. An absent attribute that a
  * built-in stage reads gives 0,0,0,1 at every vertex. */

@@ -7,8 +7,8 @@ set -eu
 mode=$1
 out=$2
 dir=$(dirname "$0")
-tmp=$out.d
-rm -rf "$tmp"
+tmp=$out.$$
+
 mkdir -p "$tmp"
 [ "$mode" = spirv ] || { echo "embed.sh: unknown mode $mode" >&2; exit 2; }
 

@@ -11,15 +11,14 @@
 #include "shaders/surface.glsl"
 
 layout(constant_id = HL_SPEC_BASE) const uint hl_spec_base = 1u;
+layout(location = HL_VARY_POSITION) in vec3 v_position;
 layout(location = 0) out vec4 out_color;
 
 void main()
 {
     hl_surface s = hl_read_surface();
-    vec3 c = vec3(0.0);
-    if (hl_spec_base != 0u)
-        c = s.emission + s.albedo * hl_frame.ambient.rgb;
-    vec3 p = hl_frag_position();
+    vec3 c = hl_spec_base != 0u ? s.base : vec3(0.0);
+    vec3 p = v_position;
     vec3 n = hl_read_normal();
     vec3 v = -p * inversesqrt(dot(p, p));
 #ifdef HL_LIST

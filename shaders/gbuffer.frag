@@ -6,7 +6,7 @@
 #define HL_NORMALS
 #include "shaders/surface.glsl"
 
-layout(location = 0) flat in float v_id;
+layout(location = HL_VARY_IDS) flat in vec4 v_ids;
 layout(location = 0) out vec4 out_normal;
 layout(location = 1) out vec4 out_dsf;
 #ifdef HL_EXPONENT
@@ -21,15 +21,15 @@ void main()
 #endif
     vec2 e = hl_normal_encode(hl_read_normal());
     out_normal = vec4(hl_snorm_to_unorm(e.x), hl_snorm_to_unorm(e.y), 0.0, 1.0);
-    out_dsf = vec4(hl_depth_encode(1.0 / gl_FragCoord.w, hl_frame.depth.z),
-                   hl_id_encode(v_id, hl_frame.dsf_id.x), 0.0, 1.0);
+    out_dsf = vec4(hl_depth_encode(1.0 / gl_FragCoord.w, v_ids.z),
+                   hl_id_encode(v_ids.x, 1.0 / 65535.0), 0.0, 1.0);
 #ifdef HL_EXPONENT
-    float n = hl_material.specular.w;
+    float code = v_ids.y;
 #ifdef HL_FULL
     if ((hl_spec_textures & HL_TEXTURED_METAL_ROUGH) != 0u)
-        n = hl_roughness_exponent(hl_material.params.y *
-                                  texture(hl_tex_mr, v_uv).g);
+        code = hl_exponent_encode(hl_roughness_exponent(
+            hl_material.params.y * texture(hl_tex_mr, v_uv).g));
 #endif
-    out_exponent = vec4(hl_exponent_encode(n), 0.0, 0.0, 1.0);
+    out_exponent = vec4(code, 0.0, 0.0, 1.0);
 #endif
 }

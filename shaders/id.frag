@@ -5,7 +5,7 @@
  * regard to what the DSF can store; 0 is the background. */
 #include "shaders/surface.glsl"
 
-layout(location = 0) flat in float v_id;
+layout(location = HL_VARY_IDS) flat in vec4 v_ids;
 layout(location = 0) out uint out_id;
 
 void main()
@@ -15,5 +15,5 @@ void main()
         hl_alpha_test(hl_base_color().a);
 #endif
     out_id = (uint(hl_object.ids.y) + 1u) << 16 |
-             (uint(v_id - hl_object.ids.x) & 0xffffu);
+             (uint(v_ids.x - hl_object.ids.x) & 0xffffu);
 }

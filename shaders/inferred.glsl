@@ -9,68 +9,102 @@
 #include "shaders/shared/shade.h"
 
 layout(constant_id = HL_SPEC_DSF) const uint hl_spec_dsf = 1u;
-layout(set = 1, binding = HL_TEX_LIGHT) uniform sampler2D hl_tex_light;
-layout(set = 1, binding = HL_TEX_DSF) uniform sampler2D hl_tex_dsf;
+layout(constant_id = HL_SPEC_LIGHT_BITS) const uint hl_spec_light_bits = 0u;
+layout(constant_id = HL_SPEC_LIGHT_WIDTH) const float hl_spec_light_w = 1.0;
+layout(constant_id = HL_SPEC_LIGHT_HEIGHT) const float hl_spec_light_h = 1.0;
+layout(constant_id = HL_SPEC_RATIO_X) const float hl_spec_ratio_x = 1.0;
+layout(constant_id = HL_SPEC_RATIO_Y) const float hl_spec_ratio_y = 1.0;
+layout(constant_id = HL_SPEC_DSF_K) const float hl_spec_dsf_k = 1.5;
+layout(constant_id = HL_SPEC_DSF_C) const float hl_spec_dsf_c = 0.001;
+layout(constant_id = HL_SPEC_DSF_TAU) const float hl_spec_dsf_tau = 0.01;
+layout(constant_id = HL_SPEC_LIGHT_SCALE) const float hl_spec_scale = 1.0;
+layout(set = 1, binding = HL_TEX_LIGHT) uniform usampler2D hl_tex_light;
+layout(set = 1, binding = HL_TEX_DSF) uniform usampler2D hl_tex_dsf;
 
 /* D of the light model (without ambient), and the factor that turns a
  * surface's ks into its specular light: S ks = specular * ks. */
 struct hl_lit { vec3 diffuse; vec3 specular; };
 
-struct hl_taps { ivec2 base, last; vec2 f; };
+/* The four texels around a pixel: the point between them, where a gather
+ * takes exactly these whatever the machine's rounding, and the fraction. */
+struct hl_taps { vec2 middle, f; };
 
 hl_taps hl_find_taps()
 {
-    vec2 p = gl_FragCoord.xy * hl_frame.light_size.zw - 0.5;
+    vec2 p = gl_FragCoord.xy * vec2(hl_spec_ratio_x, hl_spec_ratio_y) - 0.5;
     vec2 b = floor(p);
-    return hl_taps(ivec2(b), ivec2(hl_frame.light_size.xy) - 1, p - b);
+    vec2 texel = vec2(1.0 / hl_spec_light_w, 1.0 / hl_spec_light_h);
+    return hl_taps((b + 1.0) * texel, p - b);
 }
 
-ivec2 hl_tap(hl_taps t, int x, int y)
-{
-    return clamp(t.base + ivec2(x, y), ivec2(0), t.last);
-}
+/* A gather gives texels 01, 11, 10, 00; everything here is 00, 10, 01, 11. */
+uvec4 hl_in_order(uvec4 g) { return g.wzxy; }
 
-/* Acceptance, 0 or 1, of taps 00, 10, 01, 11 for region id. */
-vec4 hl_accept_taps(hl_taps t, float id)
+/* Acceptance, 0 or 1, of taps 00, 10, 01, 11 for a surface's ids. */
+vec4 hl_accept_taps(hl_taps t, vec4 ids)
 {
     float z = 1.0 / gl_FragCoord.w;
-    float threshold = hl_frame.dsf_id.z * z;
+    float step = ids.w / 65535.0;
+    float threshold = hl_spec_dsf_tau * z;
     if (hl_spec_dsf == uint(HL_DSF_SLOPE)) {
-        /* Pixels to L texels: an L texel spans 1 / light_size.zw pixels. */
-        float slope = abs(dFdx(z)) / hl_frame.light_size.z +
-                      abs(dFdy(z)) / hl_frame.light_size.w;
-        threshold = hl_dsf_threshold(hl_frame.dsf.x, hl_frame.dsf.y,
-                                     hl_frame.dsf.z, z, slope, hl_frame.dsf.w);
+        /* Pixels to L texels: an L texel spans 1 / ratio pixels. The taps
+         * lie within one texel of the pixel on either axis. */
+        float slope = abs(dFdx(z)) * (1.0 / hl_spec_ratio_x) +
+                      abs(dFdy(z)) * (1.0 / hl_spec_ratio_y);
+        threshold = hl_dsf_threshold(step, hl_spec_dsf_k, hl_spec_dsf_c, z,
+                                     slope, 1.0);
     }
-    vec2 a = texelFetch(hl_tex_dsf, hl_tap(t, 0, 0), 0).xy;
-    vec2 b = texelFetch(hl_tex_dsf, hl_tap(t, 1, 0), 0).xy;
-    vec2 c = texelFetch(hl_tex_dsf, hl_tap(t, 0, 1), 0).xy;
-    vec2 d = texelFetch(hl_tex_dsf, hl_tap(t, 1, 1), 0).xy;
-    float i = hl_id_encode(id, hl_frame.dsf_id.x);
-    float h = hl_frame.dsf_id.y;
-    float far = hl_frame.depth.w;
-    return vec4(hl_dsf_accept(a.x * far, a.y, z, i, threshold, h),
-                hl_dsf_accept(b.x * far, b.y, z, i, threshold, h),
-                hl_dsf_accept(c.x * far, c.y, z, i, threshold, h),
-                hl_dsf_accept(d.x * far, d.y, z, i, threshold, h));
+    /* Depth in the low half of the word, id in the high half, both codes. */
+    uvec4 w = hl_in_order(textureGather(hl_tex_dsf, t.middle, 0));
+    vec4 d = vec4(w & 0xffffu) * step;
+    vec4 i = vec4(w >> 16u);
+    return vec4(hl_dsf_accept(d.x, i.x, z, ids.x, threshold, 0.5),
+                hl_dsf_accept(d.y, i.y, z, ids.x, threshold, 0.5),
+                hl_dsf_accept(d.z, i.z, z, ids.x, threshold, 0.5),
+                hl_dsf_accept(d.w, i.w, z, ids.x, threshold, 0.5));
 }
 
-/* id: the stored id of the surface's region, hl_object.ids.x + its group. */
-hl_lit hl_read_lights(float id)
+vec4 hl_unpack_light(uvec4 w)
+{
+    if (hl_spec_light_bits == uint(HL_BITS_HALF))
+        return vec4(unpackHalf2x16(w.x), unpackHalf2x16(w.y));
+    if (hl_spec_light_bits == uint(HL_BITS_UNORM16))
+        return vec4(unpackUnorm2x16(w.x), unpackUnorm2x16(w.y));
+    if (hl_spec_light_bits == uint(HL_BITS_FLOAT))
+        return uintBitsToFloat(w);
+    return unpackUnorm4x8(w.x);
+}
+
+/* The four texels weighted. Words that a format does not have are not read. */
+vec4 hl_weigh_light(vec2 middle, vec4 k)
+{
+    bool wide = hl_spec_light_bits == uint(HL_BITS_FLOAT);
+    uvec4 zero = uvec4(0u);
+    uvec4 r = hl_in_order(textureGather(hl_tex_light, middle, 0));
+    uvec4 g = hl_spec_light_bits == uint(HL_BITS_UNORM8)
+              ? zero : hl_in_order(textureGather(hl_tex_light, middle, 1));
+    uvec4 b = wide ? hl_in_order(textureGather(hl_tex_light, middle, 2)) : zero;
+    uvec4 a = wide ? hl_in_order(textureGather(hl_tex_light, middle, 3)) : zero;
+    return hl_unpack_light(uvec4(r.x, g.x, b.x, a.x)) * k.x +
+           hl_unpack_light(uvec4(r.y, g.y, b.y, a.y)) * k.y +
+           hl_unpack_light(uvec4(r.z, g.z, b.z, a.z)) * k.z +
+           hl_unpack_light(uvec4(r.w, g.w, b.w, a.w)) * k.w;
+}
+
+/* ids: the varying HL_VARY_IDS as it comes. */
+hl_lit hl_read_lights(vec4 ids)
 {
     vec4 l;
     if (hl_spec_dsf == uint(HL_DSF_EXACT)) {
-        l = texelFetch(hl_tex_light, ivec2(gl_FragCoord.xy), 0);
+        l = hl_unpack_light(texelFetch(hl_tex_light, ivec2(gl_FragCoord.xy),
+                                       0));
     } else {
         hl_taps t = hl_find_taps();
         vec4 w = hl_bilinear(t.f);
         if (hl_spec_dsf != uint(HL_DSF_OFF))
-            w = hl_dsf_weights(w, hl_accept_taps(t, id));
-        l = texelFetch(hl_tex_light, hl_tap(t, 0, 0), 0) * w.x +
-            texelFetch(hl_tex_light, hl_tap(t, 1, 0), 0) * w.y +
-            texelFetch(hl_tex_light, hl_tap(t, 0, 1), 0) * w.z +
-            texelFetch(hl_tex_light, hl_tap(t, 1, 1), 0) * w.w;
+            w = hl_dsf_weights(w, hl_accept_taps(t, ids));
+        l = hl_weigh_light(t.middle, w);
     }
-    l *= hl_frame.ambient.w;
+    l *= hl_spec_scale;
     return hl_lit(l.rgb, l.rgb * hl_specular_scale(l.rgb, l.a));
 }

@@ -17,20 +17,31 @@ layout(set = 2, binding = HL_SLOT_TILES, std430) readonly buffer hl_tile_block {
     uvec2 tile[]; /* first element of the list, count */
 } hl_tiles;
 #endif
+#ifdef HL_FLAT
+layout(location = 0) flat in vec4 v_ray;
+layout(location = 1) flat in vec4 v_terms;
+#endif
+layout(constant_id = HL_SPEC_LIGHT_SCALE) const float hl_spec_scale = 1.0;
 layout(location = 0) out vec4 out_light;
 
 void main()
 {
+#ifdef HL_FLAT
+    vec4 ray = v_ray;
+    vec3 terms = v_terms.xyz;
+#else
+    vec4 ray = hl_frame.ray_light;
+    vec3 terms = vec3(hl_frame.depth.xy, hl_frame.misc.x);
+#endif
     ivec2 texel = ivec2(gl_FragCoord.xy);
     float d = texelFetch(hl_tex_depth, texel, 0).x;
-    float z = hl_frame.depth.x / (d + hl_frame.depth.y);
-    vec3 p = vec3((gl_FragCoord.xy * hl_frame.ray_light.xy +
-                   hl_frame.ray_light.zw) * z, -z);
+    float z = terms.x / (d + terms.y);
+    vec3 p = vec3((gl_FragCoord.xy * ray.xy + ray.zw) * z, -z);
     vec2 e = texelFetch(hl_tex_normal, texel, 0).xy;
     vec3 n = hl_normal_decode(hl_v2(hl_unorm_to_snorm(e.x),
                                     hl_unorm_to_snorm(e.y)));
     vec3 v = -p * inversesqrt(dot(p, p));
-    float exponent = hl_frame.misc.x;
+    float exponent = terms.z;
     if (hl_spec_specular == uint(HL_SPECULAR_CHANNEL))
         exponent = hl_exponent_decode(texelFetch(hl_tex_exponent, texel, 0).x);
 #ifdef HL_TILES
@@ -40,5 +51,5 @@ void main()
 #else
     hl_sum s = hl_sum_batch(p, n, v, exponent);
 #endif
-    out_light = vec4(s.diffuse, s.intensity) / hl_frame.ambient.w;
+    out_light = vec4(s.diffuse, s.intensity) / hl_spec_scale;
 }

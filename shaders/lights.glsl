@@ -21,6 +21,8 @@ void hl_add_light(inout hl_sum s, vec3 p, vec3 n, vec3 v, float exponent,
 {
     vec3 to = a.xyz - p;
     float d2 = dot(to, to);
+    /* d = 0 gives l = 0, so N.L = 0: such a light adds nothing. */
+    vec3 l = to * inversesqrt(max(d2, 1e-20));
     float att;
     if (hl_spec_falloff == 1u)
         att = hl_falloff_smooth(d2, a.w);
@@ -29,8 +31,6 @@ void hl_add_light(inout hl_sum s, vec3 p, vec3 n, vec3 v, float exponent,
     else
         att = b.w > 0.5 ? hl_falloff_inverse_square(d2, a.w)
                         : hl_falloff_smooth(d2, a.w);
-    /* d = 0 gives l = 0, so N.L = 0: such a light adds nothing. */
-    vec3 l = to * inversesqrt(max(d2, 1e-20));
     if (hl_spec_kinds != 0u) {
         bool parallel = d.y > 0.5;
         l = parallel ? -c.xyz : l;
@@ -39,13 +39,24 @@ void hl_add_light(inout hl_sum s, vec3 p, vec3 n, vec3 v, float exponent,
     float ndl = max(dot(n, l), 0.0) * att;
     s.diffuse += b.xyz * ndl;
     if (hl_spec_specular != 0u) {
+        /* (N.H)^n with H = h / |h|, as ((N.h)^2 / h^2)^(n/2): one division
+         * in place of a root and a division. */
         vec3 h = l + v;
-        float ndh = dot(n, h) * inversesqrt(max(dot(h, h), 1e-20));
-        float spec = ndl * hl_specular(ndh, exponent);
+        float nh = max(dot(n, h), 0.0);
+        float spec = ndl * hl_specular(nh * nh / max(dot(h, h), 1e-20),
+                                       exponent * 0.5);
         s.specular += b.xyz * spec;
         s.intensity += hl_luminance(b.xyz) * spec;
     }
 }
+
+/* A light's data from wherever the stage has it. */
+#ifdef HL_FLAT
+layout(location = 2) flat in vec4 v_light[HL_FLAT_VEC4S];
+#define HL_BATCH_DATA(i) v_light[min(i, HL_FLAT_VEC4S - 1u)]
+#else
+#define HL_BATCH_DATA(i) hl_lights.data[i]
+#endif
 
 /* The lights of uniform slot 3: a fixed number, those not needed are black,
  * so that every address is known and the loop unrolls. */
@@ -55,13 +66,13 @@ hl_sum hl_sum_batch(vec3 p, vec3 n, vec3 v, float exponent)
     for (uint i = 0u; i < hl_spec_batch; i++) {
         if (hl_spec_kinds != 0u) {
             uint k = i * HL_LIGHT_VEC4S;
-            hl_add_light(s, p, n, v, exponent, hl_lights.data[k],
-                         hl_lights.data[k + 1u], hl_lights.data[k + 2u],
-                         hl_lights.data[k + 3u]);
+            hl_add_light(s, p, n, v, exponent, HL_BATCH_DATA(k),
+                         HL_BATCH_DATA(k + 1u), HL_BATCH_DATA(k + 2u),
+                         HL_BATCH_DATA(k + 3u));
         } else {
             uint k = i * HL_POINT_VEC4S;
-            hl_add_light(s, p, n, v, exponent, hl_lights.data[k],
-                         hl_lights.data[k + 1u], vec4(0.0), vec4(0.0));
+            hl_add_light(s, p, n, v, exponent, HL_BATCH_DATA(k),
+                         HL_BATCH_DATA(k + 1u), vec4(0.0), vec4(0.0));
         }
     }
     return s;

@@ -5,13 +5,13 @@
 #include "shaders/inferred.glsl"
 #include "shaders/surface.glsl"
 
-layout(location = 0) flat in float v_id;
+layout(location = HL_VARY_IDS) flat in vec4 v_ids;
 layout(location = 0) out vec4 out_color;
 
 void main()
 {
     hl_surface s = hl_read_surface();
-    hl_lit l = hl_read_lights(v_id);
-    out_color = vec4(s.emission + s.albedo * (hl_frame.ambient.rgb + l.diffuse)
-                     + s.specular * l.specular, s.alpha);
+    hl_lit l = hl_read_lights(v_ids);
+    out_color = vec4(s.base + s.albedo * l.diffuse + s.specular * l.specular,
+                     s.alpha);
 }

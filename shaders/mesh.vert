@@ -2,7 +2,9 @@
 #extension GL_GOOGLE_include_directive : require
 /* SPDX-License-Identifier: Zlib */
 /* Every mesh pass: position alone, or with what the pass needs. The position
- * is one expression and invariant, so that passes with an equal test meet. */
+ * is one expression and invariant, so that passes with an equal test meet.
+ * What is the same for a whole object goes down as flat varyings: a uniform
+ * read in the fragment stage costs a software driver more. */
 #include "shaders/shared/block.h"
 #include "shaders/shared/pack.h"
 
@@ -12,27 +14,36 @@ invariant gl_Position;
 layout(location = HL_ATTR_TANGENT) in vec4 in_tangent;
 #endif
 #ifdef HL_WITH_ID
-layout(location = 0) flat out float v_id;
+layout(location = HL_VARY_IDS) flat out vec4 v_ids;
 #endif
 #ifdef HL_WITH_NORMAL
 layout(location = HL_ATTR_NORMAL) in vec3 in_normal;
-layout(location = 1) out vec3 v_normal;
+layout(location = HL_VARY_NORMAL) out vec3 v_normal;
 #endif
 #ifdef HL_WITH_TANGENT
-layout(location = 2) out vec4 v_tangent;
+layout(location = HL_VARY_TANGENT) out vec4 v_tangent;
 #endif
 #ifdef HL_WITH_UV
 layout(location = HL_ATTR_UV) in vec2 in_uv;
 layout(location = HL_ATTR_COLOR) in vec4 in_color;
-layout(location = 3) out vec2 v_uv;
-layout(location = 4) out vec4 v_color;
+layout(location = HL_VARY_UV) out vec2 v_uv;
+layout(location = HL_VARY_COLOR) out vec4 v_color;
+#endif
+#ifdef HL_WITH_PLAIN
+layout(location = HL_VARY_ALBEDO) flat out vec4 v_albedo;
+layout(location = HL_VARY_SPECULAR) flat out vec4 v_specular;
+layout(location = HL_VARY_BASE) flat out vec4 v_base;
+#endif
+#ifdef HL_WITH_POSITION
+layout(location = HL_VARY_POSITION) out vec3 v_position;
 #endif
 
 void main()
 {
     gl_Position = hl_object.clip * vec4(in_position, 1.0);
 #ifdef HL_WITH_ID
-    v_id = hl_object.ids.x + hl_tangent_w_group(in_tangent.w);
+    v_ids = vec4(hl_object.ids.x + hl_tangent_w_group(in_tangent.w),
+                 hl_object.flat_ids.x, hl_frame.depth.z, hl_frame.depth.w);
 #endif
 #ifdef HL_WITH_NORMAL
     /* Normalised at the vertex; a singular matrix leaves zero, not NaN. */
@@ -41,11 +52,20 @@ void main()
     v_normal = n2 > 0.0 ? n * inversesqrt(n2) : vec3(0.0);
 #endif
 #ifdef HL_WITH_TANGENT
-    v_tangent = vec4(mat3(hl_object.tangent) * in_tangent.xyz,
-                     hl_tangent_w_sign(in_tangent.w));
+    v_tangent = vec4(mat3(hl_object.model_view) * in_tangent.xyz,
+                     hl_tangent_w_sign(in_tangent.w) * hl_object.flat_ids.y);
 #endif
 #ifdef HL_WITH_UV
     v_uv = in_uv;
     v_color = in_color;
+#endif
+#ifdef HL_WITH_PLAIN
+    v_albedo = hl_material.albedo;
+    v_specular = hl_material.specular;
+    v_base = vec4(hl_material.emission.rgb +
+                  hl_material.albedo.rgb * hl_frame.ambient.rgb, 0.0);
+#endif
+#ifdef HL_WITH_POSITION
+    v_position = (hl_object.model_view * vec4(in_position, 1.0)).xyz;
 #endif
 }

@@ -11,14 +11,14 @@ layout(constant_id = HL_SPEC_TWO_SIDED) const uint hl_spec_two_sided = 0u;
 struct hl_surface {
     vec3 albedo;
     vec3 specular;
-    vec3 emission;
+    vec3 base;       /* e + rho A: emission and ambient                      */
     float exponent;
     float alpha;
 };
 
 #ifdef HL_FULL
-layout(location = 3) in vec2 v_uv;
-layout(location = 4) in vec4 v_color;
+layout(location = HL_VARY_UV) in vec2 v_uv;
+layout(location = HL_VARY_COLOR) in vec4 v_color;
 layout(set = 1, binding = HL_TEX_BASE) uniform sampler2D hl_tex_base;
 layout(set = 1, binding = HL_TEX_METAL_ROUGH) uniform sampler2D hl_tex_mr;
 layout(set = 1, binding = HL_TEX_EMISSION) uniform sampler2D hl_tex_emission;
@@ -56,25 +56,28 @@ hl_surface hl_read_surface()
     s.albedo = hl_material_albedo(base.rgb, metallic);
     s.specular = hl_material_specular(base.rgb, metallic, s.exponent) *
                  hl_material.emission.w;
-    s.emission = emission;
+    s.base = emission + s.albedo * hl_frame.ambient.rgb;
     s.alpha = base.a;
     return s;
 }
-#else
-void hl_alpha_test(float alpha) { }
+#endif
+
+#ifdef HL_PLAIN
+layout(location = HL_VARY_ALBEDO) flat in vec4 v_albedo;
+layout(location = HL_VARY_SPECULAR) flat in vec4 v_specular;
+layout(location = HL_VARY_BASE) flat in vec4 v_base;
 
 hl_surface hl_read_surface()
 {
-    return hl_surface(hl_material.albedo.rgb, hl_material.specular.rgb,
-                      hl_material.emission.rgb, hl_material.specular.w,
-                      hl_material.albedo.a);
+    return hl_surface(v_albedo.rgb, v_specular.rgb, v_base.rgb, v_specular.w,
+                      v_albedo.a);
 }
 #endif
 
 #ifdef HL_NORMALS
-layout(location = 1) in vec3 v_normal;
+layout(location = HL_VARY_NORMAL) in vec3 v_normal;
 #ifdef HL_FULL
-layout(location = 2) in vec4 v_tangent;
+layout(location = HL_VARY_TANGENT) in vec4 v_tangent;
 layout(set = 1, binding = HL_TEX_NORMAL_MAP) uniform sampler2D hl_tex_normal;
 #endif
 
@@ -102,10 +105,3 @@ vec3 hl_read_normal()
     return len2 > 0.0 ? n * inversesqrt(len2) : vec3(0.0, 0.0, 1.0);
 }
 #endif
-
-/* View position of this fragment's pixel centre, from its own depth. */
-vec3 hl_frag_position()
-{
-    float z = 1.0 / gl_FragCoord.w;
-    return vec3((gl_FragCoord.xy * hl_frame.ray.xy + hl_frame.ray.zw) * z, -z);
-}

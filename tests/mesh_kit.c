@@ -62,10 +62,13 @@ uint64_t mk_seed(void)
     return seed;
 }
 
+/* A counter through two multiply-xorshift rounds. */
 uint32_t mk_random(uint64_t *state)
 {
-    *state = *state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-    return (uint32_t)((*state ^ *state >> 22) >> 24);
+    uint64_t x = *state += UINT64_C(0x9E3779B97F4A7C15);
+    x = (x ^ x >> 31) * UINT64_C(0xD1342543DE82EF95);
+    x = (x ^ x >> 29) * UINT64_C(0xAF251AF3B0F025B5);
+    return (uint32_t)(x >> 32);
 }
 
 uint32_t mk_below(uint64_t *state, uint32_t n)
@@ -297,7 +300,8 @@ void mk_soup(struct mk_mesh *m, uint32_t n_triangles, uint32_t n_places,
                 p[k] = mk_unit(&place) - 0.5f;
                 n[k] = mk_unit(&turn) - 0.5f;
             }
-            mk_vertex(m, p, n, mk_unit(state), mk_unit(state));
+            float u = mk_unit(state); /* one by one: arguments have no order */
+            mk_vertex(m, p, n, u, mk_unit(state));
         }
         mk_triangle(m, v, v + 1, v + 2);
     }

@@ -480,8 +480,10 @@ static void soup_matches_the_oracle(void **state)
     assert_non_null(o);
     for (int i = 0; i < 120; i++) {
         mk_free(&f->mesh);
-        mk_soup(&f->mesh, 1 + mk_below(&random, 200),
-                4 + mk_below(&random, 60), 1 + mk_below(&random, 3), &random);
+        uint32_t n_triangles = 1 + mk_below(&random, 200);
+        uint32_t n_places = 4 + mk_below(&random, 60);
+        uint32_t n_normals = 1 + mk_below(&random, 3);
+        mk_soup(&f->mesh, n_triangles, n_places, n_normals, &random);
         drop_flat(&f->mesh);
         prepare_mesh(f);
         oracle_groups(o, &f->mesh);

@@ -58,7 +58,7 @@ bool hlc_world_create(struct hlc_world *out, struct hl_device *device,
 /* While the device is still open; a zeroed world is allowed. */
 void hlc_world_free(struct hlc_world *world);
 
-/* ---- view.c ----------------------------------------------------------- */
+/* ---- view.c -------------------------------------------------------- */
 
 /* The scene's camera. near and far in metres, 0 = by the scene's bounds:
  *

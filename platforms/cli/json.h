@@ -23,6 +23,9 @@ void hlc_json_uint(cJSON *object, const char *key, uint64_t value);
 /* [width, height] */
 void hlc_json_size(cJSON *object, const char *key, uint32_t width,
                    uint32_t height);
+/* The "scene" and "camera" objects. near and far in metres, 0 = no limit. */
+void hlc_json_scene(cJSON *tree, const struct hlh_scene *scene, double near,
+                    double far);
 /* Write the tree and a line end to path by temporary file and rename, or to
  * stdout when path is "-". */
 bool hlc_json_emit(const cJSON *tree, const char *path,

@@ -25,7 +25,6 @@ static float select_kth(float *v, size_t n, size_t k)
             v[i++] = v[j];
             v[j--] = t;
         }
-        /* i == j stands on a pivot's equal when both stopped there. */
         if (k <= j)
             high = j;
         else

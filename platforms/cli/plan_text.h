@@ -15,13 +15,18 @@ const char *hlc_light_path_name(enum hl_light_path);   /* "tiles"            */
 const char *hlc_reason_name(enum hl_reason);           /* "dsf_slope"        */
 const char *hlc_dsf_name(uint32_t dsf);                /* HL_DSF_*: "slope"  */
 const char *hlc_specular_name(uint32_t specular);      /* HL_SPECULAR_*      */
+const char *hlc_falloff_name(uint32_t falloff);        /* HL_SPEC_FALLOFF    */
 const char *hlc_blend_name(enum hl_blend);
 const char *hlc_compare_name(enum hl_compare);
 const char *hlc_repeat_name(enum hl_repeat);
+/* Unit of hl_plan_target.error; "" where a role has no error. */
+const char *hlc_error_unit(enum hl_role);
 
-/* One sentence with its numbers, and the section of the paper that says so,
- * "" where it is not the paper's. Cut to `bytes`. */
-void hlc_reason_text(const struct hl_plan_reason *, char *out, size_t bytes);
+/* Reason i of the plan: one sentence with its numbers, cut to `bytes`. */
+void hlc_reason_text(const struct hl_plan *plan, uint32_t i, char *out,
+                     size_t bytes);
+/* The section of the paper that says so, "" where it is not the paper's:
+ * "K 2.1" is Kircher and Lawrance 2009, section 2.1. */
 const char *hlc_reason_section(enum hl_reason);
 /* What could not be met, as a sentence; "" for HL_REFUSED_NOTHING. */
 const char *hlc_refusal_text(enum hl_refusal);

@@ -160,6 +160,20 @@ void hlh_build_light(struct hlh_builder *b, struct hlh_v3 at, double radius,
     store(l->color, color);
 }
 
+void hlh_build_random_light(struct hlh_builder *b, struct hlh_v3 at,
+                            const struct hlh_light_range *r)
+{
+    double radius, hue, saturation, brightness;
+    at.x += hlh_random(b, -r->spread.x, r->spread.x);
+    at.y += hlh_random(b, -r->spread.y, r->spread.y);
+    at.z += hlh_random(b, -r->spread.z, r->spread.z);
+    radius = hlh_random(b, r->radius[0], r->radius[1]);
+    hue = hlh_random(b, 0, 1);
+    saturation = hlh_random(b, r->saturation[0], r->saturation[1]);
+    brightness = hlh_random(b, r->brightness[0], r->brightness[1]);
+    hlh_build_light(b, at, radius, hlh_hue(hue, saturation, brightness));
+}
+
 void hlh_build_camera(struct hlh_builder *b, struct hlh_v3 eye,
                       struct hlh_v3 target, double vfov)
 {

@@ -24,7 +24,8 @@ struct hlh_v3 {
 void hlh_build_begin(struct hlh_builder *b, struct hlh_scene *scene,
                      uint32_t seed);
 
-/* Uniform in [low, high); uniform integer in 0..n-1. */
+/* Uniform in [low, high); uniform integer in 0..n-1. One call a statement: C
+ * leaves the order of a call's arguments open, and compilers differ. */
 double hlh_random(struct hlh_builder *b, double low, double high);
 uint32_t hlh_random_below(struct hlh_builder *b, uint32_t n);
 /* Sine and cosine of turns (1 = a whole circle), |error| < 1e-14. */
@@ -44,6 +45,13 @@ void hlh_build_object(struct hlh_builder *b, uint32_t mesh, struct hlh_v3 at,
 void hlh_build_object_at_origin(struct hlh_builder *b, uint32_t mesh);
 void hlh_build_light(struct hlh_builder *b, struct hlh_v3 at, double radius,
                      struct hlh_v3 color);
+/* Somewhere in the box center +- spread, any hue; the others from ranges. */
+struct hlh_light_range {
+    struct hlh_v3 spread;
+    double radius[2], saturation[2], brightness[2];
+};
+void hlh_build_random_light(struct hlh_builder *b, struct hlh_v3 center,
+                            const struct hlh_light_range *range);
 void hlh_build_camera(struct hlh_builder *b, struct hlh_v3 eye,
                       struct hlh_v3 target, double vfov);
 

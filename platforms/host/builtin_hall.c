@@ -127,7 +127,8 @@ static void columns(struct hlh_builder *b)
     hlh_add_box(b, hlh_v3(0, 8.6, 0), hlh_v3(0.95, 0.4, 0.95), 1, false);
     mesh = hlh_build_mesh(b, "column", stone);
     for (int i = 0; i < 12; i++)
-        hlh_build_object(b, mesh, hlh_v3(i & 1 ? 8 : -8, 0, -17.5 + 7 * (i / 2)),
+        hlh_build_object(b, mesh,
+                         hlh_v3(i & 1 ? 8 : -8, 0, -17.5 + 7 * (i / 2)),
                          hlh_v3(1, 1, 1), 0);
 }
 
@@ -148,26 +149,23 @@ static void vases(struct hlh_builder *b)
     for (int i = 0; i < 16; i++) {
         struct hlh_v3 color = hlh_hue(i / 16.0, 0.35, 0.85);
         double size = hlh_random(b, 0.7, 1.15);
+        double x = -4.5 + 3 * (i % 4) + hlh_random(b, -0.5, 0.5);
+        double z = -15 + 8 * (i / 4) + hlh_random(b, -1, 1);
         uint32_t m = hlh_build_material(b, "glaze", color,
                                         hlh_random(b, 0.3, 0.5), 0);
-        hlh_build_object(b, vase(b, m),
-                         hlh_v3(-4.5 + 3 * (i % 4) + hlh_random(b, -0.5, 0.5),
-                                0, -15 + 8 * (i / 4) + hlh_random(b, -1, 1)),
+        hlh_build_object(b, vase(b, m), hlh_v3(x, 0, z),
                          hlh_v3(size, size, size), hlh_random(b, 0, 1));
     }
 }
 
 void hlh_build_lidr(struct hlh_builder *b)
 {
+    static const struct hlh_light_range lamps = {
+        {14.5, 3.55, 21.25}, {2.4, 4.4}, {0.6, 0.95}, {0.8, 1.3}};
     room(b);
     columns(b);
     vases(b);
     for (int i = 0; i < 255; i++)
-        hlh_build_light(b, hlh_v3(hlh_random(b, -14.5, 14.5),
-                                  hlh_random(b, 0.4, 7.5),
-                                  hlh_random(b, -22.5, 20)),
-                        hlh_random(b, 2.4, 4.4),
-                        hlh_hue(hlh_random(b, 0, 1), hlh_random(b, 0.6, 0.95),
-                                hlh_random(b, 0.8, 1.3)));
+        hlh_build_random_light(b, hlh_v3(0, 3.95, -1.25), &lamps);
     hlh_build_camera(b, hlh_v3(1.2, 4.6, 21.5), hlh_v3(-0.4, 2.4, 0), 58);
 }

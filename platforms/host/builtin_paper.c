@@ -42,8 +42,8 @@ static void paints(struct hlh_builder *b, uint32_t *paint)
     for (uint32_t i = 0; i < N_PAINTS; i++) {
         bool metal = i % 6 == 5;
         double v = hlh_random(b, 0.45, 0.85);
-        struct hlh_v3 color = hlh_hue((double)i / N_PAINTS,
-                                      hlh_random(b, 0.1, 0.5), v);
+        double saturation = hlh_random(b, 0.1, 0.5);
+        struct hlh_v3 color = hlh_hue((double)i / N_PAINTS, saturation, v);
         paint[i] = hlh_build_material(b, metal ? "metal" : "paint", color,
                                       0.3 + 0.5 * ((i * 5) % N_PAINTS) /
                                                 (N_PAINTS - 1),
@@ -80,6 +80,8 @@ static void floor_slab(struct hlh_builder *b, double half)
 
 void hlh_build_fig8(struct hlh_builder *b)
 {
+    static const struct hlh_light_range lamps = {
+        {0.5, 0.75, 0.5}, {4.2, 5.4}, {0.6, 0.95}, {0.45, 0.8}};
     struct stock stock = {{0}, {{0}}};
     floor_slab(b, 14);
     paints(b, stock.paint);
@@ -88,14 +90,9 @@ void hlh_build_fig8(struct hlh_builder *b)
         double z = (i / 10 - 4.5) * 2.5 + hlh_random(b, -0.4, 0.4);
         drop_object(b, &stock, hlh_v3(x, 0, z), hlh_random(b, 0.55, 0.85));
     }
-    for (uint32_t i = 0; i < 81; i++) {
-        double x = (i % 9 - 4.0) * 2.7 + hlh_random(b, -0.5, 0.5);
-        double z = (i / 9 - 4.0) * 2.7 + hlh_random(b, -0.5, 0.5);
-        hlh_build_light(b, hlh_v3(x, hlh_random(b, 0.9, 2.4), z),
-                        hlh_random(b, 4.2, 5.4),
-                        hlh_hue(hlh_random(b, 0, 1), hlh_random(b, 0.6, 0.95),
-                                hlh_random(b, 0.45, 0.8)));
-    }
+    for (uint32_t i = 0; i < 81; i++)
+        hlh_build_random_light(b, hlh_v3((i % 9 - 4.0) * 2.7, 1.65,
+                                         (i / 9 - 4.0) * 2.7), &lamps);
     hlh_build_camera(b, hlh_v3(7.2, 9.4, 16.4), hlh_v3(0.2, 0, 1.2), 50);
 }
 
@@ -103,6 +100,8 @@ void hlh_build_fig8(struct hlh_builder *b)
  * square root, so that the packing is even and never a grid. */
 void hlh_build_fig7(struct hlh_builder *b)
 {
+    static const struct hlh_light_range lamps = {
+        {0, 0.7, 0}, {3.6, 4.8}, {0.6, 0.95}, {0.4, 0.75}};
     struct stock stock = {{0}, {{0}}};
     const double golden = 0.38196601125010515;   /* turns: (3 - sqrt 5)/2 */
     floor_slab(b, 22);
@@ -115,10 +114,7 @@ void hlh_build_fig7(struct hlh_builder *b)
             drop_object(b, &stock, hlh_v3(c * r, 0, s * r),
                         hlh_random(b, 0.45, 0.8));
         hlh_sincos(golden * i + 0.05, &s, &c);
-        hlh_build_light(b, hlh_v3(c * r, hlh_random(b, 0.9, 2.3), s * r),
-                        hlh_random(b, 3.6, 4.8),
-                        hlh_hue(hlh_random(b, 0, 1), hlh_random(b, 0.6, 0.95),
-                                hlh_random(b, 0.4, 0.75)));
+        hlh_build_random_light(b, hlh_v3(c * r, 1.6, s * r), &lamps);
     }
     hlh_build_camera(b, hlh_v3(9.5, 14.5, 25), hlh_v3(0, 0, 2.6), 50);
 }

@@ -65,7 +65,8 @@ static void grass(struct hlh_builder *b, uint32_t material)
 {
     for (int i = 0; i < 700; i++) {
         double s, c, tall = hlh_random(b, 0.15, 0.5);
-        double x = hlh_random(b, -6, 6), z = hlh_random(b, -10, 5);
+        double x = hlh_random(b, -6, 6);
+        double z = hlh_random(b, -10, 5);
         hlh_sincos(hlh_random(b, 0, 1), &s, &c);
         hlh_add_tube(b, hlh_v3(x, 0, z),
                      hlh_v3(x + 0.3 * tall * c, tall, z + 0.3 * tall * s),
@@ -76,6 +77,8 @@ static void grass(struct hlh_builder *b, uint32_t material)
 
 void hlh_build_thin(struct hlh_builder *b)
 {
+    static const struct hlh_light_range lamps = {
+        {1.5, 2.35, 1}, {4, 7}, {0.5, 0.9}, {0.4, 0.8}};
     uint32_t ground = hlh_build_material(b, "ground", hlh_v3(0.5, 0.5, 0.48),
                                          1, 0);
     uint32_t metal = hlh_build_material(b, "wire", hlh_v3(0.75, 0.74, 0.7), 1,
@@ -94,18 +97,15 @@ void hlh_build_thin(struct hlh_builder *b)
     plates(b, plate);
     grass(b, blade);
     for (int i = 0; i < 64; i++)
-        hlh_build_light(b, hlh_v3(-8 + 16.0 * (i % 4) / 3 +
-                                      hlh_random(b, -1.5, 1.5),
-                                  hlh_random(b, 0.5, 5.2),
-                                  6 - 2.4 * (i / 4) + hlh_random(b, -1, 1)),
-                        hlh_random(b, 4, 7),
-                        hlh_hue(hlh_random(b, 0, 1), hlh_random(b, 0.5, 0.9),
-                                hlh_random(b, 0.4, 0.8)));
+        hlh_build_random_light(b, hlh_v3(-8 + 16.0 * (i % 4) / 3, 2.85,
+                                         6 - 2.4 * (i / 4)), &lamps);
     hlh_build_camera(b, hlh_v3(0.6, 1.25, 8.5), hlh_v3(0, 1.5, -10), 55);
 }
 
 void hlh_build_many(struct hlh_builder *b)
 {
+    static const struct hlh_light_range lamps = {
+        {0.5, 0.3, 0.4}, {2.2, 3.6}, {0.5, 0.9}, {0.5, 0.9}};
     enum { COLUMNS = 40, COURSES = 25, PAINTS = 10 };
     const double wide = 0.5, tall = 0.25;
     uint32_t mesh[PAINTS];
@@ -126,13 +126,7 @@ void hlh_build_many(struct hlh_builder *b)
                                     y * tall + tall / 2, 0),
                              hlh_v3(1, 1, 1), 0);
     for (int i = 0; i < 50; i++)
-        hlh_build_light(b, hlh_v3(-9.5 + 2.1 * (i % 10) +
-                                      hlh_random(b, -0.5, 0.5),
-                                  0.4 + 1.3 * (i / 10) +
-                                      hlh_random(b, -0.3, 0.3),
-                                  hlh_random(b, 0.5, 1.3)),
-                        hlh_random(b, 2.2, 3.6),
-                        hlh_hue(hlh_random(b, 0, 1), hlh_random(b, 0.5, 0.9),
-                                hlh_random(b, 0.5, 0.9)));
+        hlh_build_random_light(b, hlh_v3(-9.5 + 2.1 * (i % 10),
+                                         0.4 + 1.3 * (i / 10), 0.9), &lamps);
     hlh_build_camera(b, hlh_v3(-4.5, 3.6, 7.5), hlh_v3(-0.8, 2.9, 0), 50);
 }

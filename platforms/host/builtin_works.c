@@ -208,39 +208,41 @@ static void lay_out(struct hlh_builder *b, const struct works *w)
     }
     for (int i = 0; i < 24; i++) {
         double size = hlh_random(b, 0.7, 1.4);
-        double x = hlh_random(b, -17, 18), z = hlh_random(b, -1, 5);
+        double x = hlh_random(b, -17, 18);
+        double z = hlh_random(b, -1, 5);
         hlh_build_object(b, w->crate, hlh_v3(x, 0.5 * size, z),
                          hlh_v3(size, size, size), hlh_random(b, 0, 1));
     }
 }
 
-static void lamp(struct hlh_builder *b, double x, double y, double z,
-                 double radius)
+static void lamp(struct hlh_builder *b, struct hlh_v3 at,
+                 struct hlh_v3 spread, double radius)
 {
-    struct hlh_v3 color = hlh_hue(hlh_random(b, 0, 1),
-                                  hlh_random(b, 0.35, 0.9),
-                                  hlh_random(b, 0.6, 1.0));
-    hlh_build_light(b, hlh_v3(x, y, z), radius, color);
+    struct hlh_light_range range = {{0, 0, 0}, {0, 0}, {0.35, 0.9}, {0.6, 1}};
+    range.spread = spread;
+    range.radius[0] = range.radius[1] = radius;
+    hlh_build_random_light(b, at, &range);
 }
 
 /* 3 x 20 along the walkways, 36 over the floor, 16 at the tanks, 10 at the
  * fence: 122. */
 static void lamps(struct hlh_builder *b)
 {
+    const struct hlh_v3 still = {0, 0, 0};
     for (int i = 0; i < 20; i++) {
         double x = -19 + 2 * i;
-        lamp(b, x, 4.6, -3, 3.6);
-        lamp(b, x, 4.6, 6.8, 3.6);
-        lamp(b, x, 7.4, -9.5, 3.6);
+        lamp(b, hlh_v3(x, 4.6, -3), still, 3.6);
+        lamp(b, hlh_v3(x, 4.6, 6.8), still, 3.6);
+        lamp(b, hlh_v3(x, 7.4, -9.5), still, 3.6);
     }
     for (int i = 0; i < 36; i++)
-        lamp(b, -17.5 + 7 * (i % 6) + hlh_random(b, -1, 1),
-             hlh_random(b, 0.6, 2.2),
-             -6 + 3 * (i / 6) + hlh_random(b, -1, 1), 4.5);
+        lamp(b, hlh_v3(-17.5 + 7 * (i % 6), 1.4, -6 + 3 * (i / 6)),
+             hlh_v3(1, 0.8, 1), 4.5);
     for (int i = 0; i < 16; i++)
-        lamp(b, -18 + 2.4 * i, hlh_random(b, 1.5, 7), -14.2, 4.6);
+        lamp(b, hlh_v3(-18 + 2.4 * i, 4.2, i & 1 ? -11.4 : -14.2),
+             hlh_v3(0, 2.8, 0), 4.6);
     for (int i = 0; i < 10; i++)
-        lamp(b, -18 + 4 * i, 2.5, 9.6, 3.2);
+        lamp(b, hlh_v3(-18 + 4 * i, 2.5, 9.6), still, 3.2);
 }
 
 void hlh_build_fig9(struct hlh_builder *b)

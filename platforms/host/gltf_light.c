@@ -106,6 +106,10 @@ static bool axis(struct gltf *g, const double world[16], int column,
     if (!(length > 0))
         return hlh_fail(g->error, g->file, "%s: is scaled to nothing, so that "
                         "its light or camera has no direction", where);
+    /* What is unit to a float's rounding stays as it is, so that a direction
+     * that was written reads back bit for bit. */
+    if (fabs(length - 1) < 4.4e-7)
+        length = 1;
     for (int k = 0; k < 3; k++)
         out[k] = (float)(sign * v[k] / length);
     return true;
@@ -185,9 +189,9 @@ static bool read_camera(struct gltf *g, uint32_t i, double *vfov,
         !gltf_number(g, perspective, where, "aspectRatio", aspect))
         return false;
     *vfov *= 180 / PI;
-    if (!(*vfov >= 0.01 && *vfov <= 179))
+    if (!(*vfov >= 0.001 && *vfov <= 179.999))
         return hlh_fail(g->error, g->file, "%s.perspective.yfov: is %g "
-                        "degrees, not from 0.01 to 179", where, *vfov);
+                        "degrees, not from 0.001 to 179.999", where, *vfov);
     if (!(*aspect >= 0 && *aspect <= 1e4))
         return hlh_fail(g->error, g->file, "%s.perspective.aspectRatio: is "
                         "%g", where, *aspect);

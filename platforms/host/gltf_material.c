@@ -75,6 +75,7 @@ static bool wrap(struct gltf *g, const cJSON *sampler, const char *where,
     return true;
 }
 
+/* out->image is the file's index until load_images. */
 static bool load_texture(struct gltf *g, uint32_t i, struct hlh_texture *out)
 {
     const cJSON *item = g->list[GLTF_TEXTURES].item[i];
@@ -87,9 +88,8 @@ static bool load_texture(struct gltf *g, uint32_t i, struct hlh_texture *out)
     if (image == HLH_NONE)
         return hlh_fail(g->error, g->file, "%s: names no PNG or JPEG image",
                         where);
-    if (g->image[image] == HLH_NONE && !load_image(g, image))
-        return false;
-    out->image = (int32_t)g->image[image];
+    g->image[image] = 0;
+    out->image = (int32_t)image;
     if (sampler == HLH_NONE)
         return true;
     item = g->list[GLTF_SAMPLERS].item[sampler];
@@ -183,7 +183,11 @@ static bool alpha_mode(struct gltf *g, const cJSON *item, const char *where,
     else
         return hlh_fail(g->error, g->file, "%s.alphaMode: is \"%.20s\", not "
                         "OPAQUE, MASK or BLEND", where, mode);
-    return factors(g, item, where, "alphaCutoff", &m->alpha_cutoff, 1, 1e30);
+    if (!factors(g, item, where, "alphaCutoff", &m->alpha_cutoff, 1, 1e30))
+        return false;
+    if (m->alpha != HLH_ALPHA_MASK)
+        m->alpha_cutoff = 0.5f;
+    return true;
 }
 
 static bool load_pbr(struct gltf *g, const cJSON *item, const char *material,
@@ -229,6 +233,28 @@ static bool load_material(struct gltf *g, uint32_t i, struct hlh_material *m)
     return true;
 }
 
+static void renumber(const struct gltf *g, struct hlh_texture *t)
+{
+    if (t->image >= 0)
+        t->image = (int32_t)g->image[t->image];
+}
+
+/* Those that textures of materials use, in the file's order. */
+static bool load_images(struct gltf *g)
+{
+    for (uint32_t i = 0; i < g->list[GLTF_IMAGES].n; i++)
+        if (g->image[i] != HLH_NONE && !load_image(g, i))
+            return false;
+    for (uint32_t i = 0; i < g->scene->n_materials; i++) {
+        struct hlh_material *m = &g->scene->materials[i];
+        renumber(g, &m->base_texture);
+        renumber(g, &m->metal_rough_texture);
+        renumber(g, &m->normal_texture);
+        renumber(g, &m->emission_texture);
+    }
+    return true;
+}
+
 bool gltf_load_materials(struct gltf *g)
 {
     uint32_t n_materials = g->list[GLTF_MATERIALS].n;
@@ -252,5 +278,5 @@ bool gltf_load_materials(struct gltf *g)
         if (!load_material(g, i, m))
             return false;
     }
-    return true;
+    return load_images(g);
 }

@@ -55,8 +55,9 @@ static bool face_normal(float out[3], const struct hlh_vertex *a,
     length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
     if (!(length > 0))
         return false;
+    /* + 0: a normal of -0 would keep equal vertices from being merged. */
     for (int i = 0; i < 3; i++)
-        out[i] = (float)(n[i] / length);
+        out[i] = (float)(n[i] / length) + 0.0f;
     return true;
 }
 
@@ -93,7 +94,7 @@ static void clean_attributes(struct hlh_mesh *mesh)
     for (uint32_t i = 0; i < mesh->n_vertices; i++) {
         struct hlh_vertex *v = &mesh->vertices[i];
         for (int k = 0; k < 2; k++)
-            v->uv[k] = clamp_or(v->uv[k], -UV_LIMIT, UV_LIMIT, 0);
+            v->uv[k] = clamp_or(v->uv[k], -UV_LIMIT, UV_LIMIT, 0) + 0.0f;
         for (int k = 0; k < 4; k++)
             v->color[k] = mesh->has_color ? clamp_or(v->color[k], 0, 1, 1) : 1;
         if (mesh->has_tangent && normalise(v->tangent))

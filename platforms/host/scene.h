@@ -45,10 +45,10 @@ struct hlh_material {
     struct hlh_texture emission_texture;  /* sRGB                            */
 };
 
-/* Normals are unit and finite (repaired on load, see scene_clean.h); tangent w is the
- * handedness +1 or -1, tangent 0,0,0,0 where the file has none; uv has v
- * downwards as in glTF (v = 0 is the image's top row); colour 1,1,1,1 where
- * the file has none. */
+/* Normals are unit and finite (repaired on load, see scene_clean.h); tangent w
+ * is the handedness +1 or -1, tangent 0,0,0,0 where the file has none; uv has
+ * v downwards as in glTF (v = 0 is the image's top row), finite, within +-1e6;
+ * colour 1,1,1,1 where the file has none, else 0..1. */
 struct hlh_vertex {
     float position[3];
     float normal[3];
@@ -116,7 +116,23 @@ struct hlh_error { char text[512]; };
 
 /* Load a built-in name (see hlh_scene_builtin_name) or a .gltf, .glb or .obj
  * file. Returns false and fills *error on any failure; *out is then zeroed.
- * Adds the documented default camera and lights where the file has none. */
+ *
+ * Default camera, where the file has no perspective camera: looks at the
+ * centre of the bounds from direction normalise(1, 0.75, 1.5), vfov 50
+ * degrees, from 1.05 / sin(25 degrees) half diagonals of the bounds away: the
+ * sphere around the bounds fits any picture that is at least as wide as high.
+ * Default lights, where the file has none: nine point lights of smooth
+ * falloff placed by the bounds: four coloured ones inside (a room is lit
+ * too), four outside around them, one white key high in front; the table is
+ * in scene_finish.c.
+ *
+ * glTF: the default scene (or the first, or all root nodes); the first
+ * perspective camera met; morph targets, skins, animations, occlusion and
+ * material extensions are ignored; points and lines are left out; one
+ * material has one set of texture coordinates and one KHR_texture_transform,
+ * its base texture's, baked into uv. Buffers and images lie beside the file
+ * or below; names that are absolute or hold .. are refused. A file that draws
+ * no triangle at all is refused. */
 bool hlh_scene_load(struct hlh_scene *out, const char *name_or_path,
                     struct hlh_error *error);
 
@@ -127,13 +143,21 @@ bool hlh_scene_builtin(struct hlh_scene *out, const char *name,
 const char *hlh_scene_builtin_name(uint32_t i, const char **description);
 
 /* Add (or with replace, put in place of all) the lights of a CSV file:
- * x,y,z,radius,r,g,b a line, smooth falloff; '#' starts a comment line. On
- * failure the scene is unchanged. */
+ * x,y,z,radius,r,g,b a line, smooth falloff; '#' starts a comment line. Added
+ * lights too take the place of default ones. On failure the scene is
+ * unchanged. */
 bool hlh_scene_lights_csv(struct hlh_scene *scene, const char *path,
                           bool replace, struct hlh_error *error);
 
 /* Write DIR-or-prefix: PREFIX.glb, PREFIX.lights.csv, PREFIX.camera. Nothing
- * half-written stays behind on failure. */
+ * half-written stays behind on failure.
+ * The CSV holds the point lights of smooth falloff; all others go into the
+ * GLB as KHR_lights_punctual. Loading the GLB gives back meshes, materials,
+ * images, objects and the latter lights bit for bit, in the same order, and
+ * adding the CSV (not replacing by it, if the GLB has lights) the rest; the
+ * camera's direction to a float's rounding. The .camera file is one line,
+ * "ex,ey,ez,tx,ty,tz,vfov 1280x720 ambient r,g,b", exact. Ambient and
+ * background are not part of a GLB. */
 bool hlh_scene_write(const struct hlh_scene *scene, const char *prefix,
                      struct hlh_error *error);
 

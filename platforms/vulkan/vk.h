@@ -14,7 +14,6 @@
 
 enum {
     HLVK_FRAMES = 2,         /* one recorded while one executes              */
-    HLVK_SETS = 3,           /* uniforms, textures, storage                  */
     HLVK_SAMPLERS = 27,      /* filter x wrap_u x wrap_v                     */
     HLVK_DUMMY_STREAM = HL_MAX_STREAMS, /* binding of absent attributes      */
     HLVK_BARRIERS = 64       /* image barriers gathered before they go out   */
@@ -82,8 +81,8 @@ struct hlvk_tex {
     struct hlvk_object head;
     VkImage image;
     struct hlvk_memory memory;
-    VkImageView view;        /* all levels; the depth aspect of a depth one  */
-    VkImageView target;      /* level 0; the same as view if there is one    */
+    VkImageView view;        /* to sample: all levels, perhaps another format */
+    VkImageView target;      /* level 0                                      */
     enum hl_format format;
     uint32_t width, height, mips;
     enum hlvk_use use;
@@ -91,10 +90,18 @@ struct hlvk_tex {
     uint64_t pass;           /* last pass that gathered its barrier          */
 };
 
+/* Sets as the pipeline layout numbers them: vk_descriptor.c says why the
+ * fourth exists. */
+enum {
+    HLVK_SET_UNIFORMS, HLVK_SET_TEXTURES, HLVK_SET_STORAGE,
+    HLVK_SET_VERTEX_UNIFORMS, HLVK_SETS
+};
+
 struct hlvk_prog {
     struct hlvk_object head;
     VkPipeline pipeline;
     uint32_t streams;        /* mask of vertex buffer bindings it declares   */
+    uint32_t reads[HLVK_SETS]; /* masks of the bindings that its stages read */
 };
 
 /* ---- frames ---------------------------------------------------------- */
@@ -108,7 +115,11 @@ struct hlvk_chunk {          /* a staging buffer, filled from the front      */
 
 struct hlvk_frame {
     VkCommandPool pool;
-    VkCommandBuffer cmd;
+    VkCommandBuffer *cmds;   /* submitted together, in order                 */
+    VkCommandBuffer cmd;     /* the last of them, which records              */
+    uint32_t n_cmds;         /* in use                                       */
+    uint32_t n_made, max_cmds;
+    bool storage;            /* cmd has bound storage buffers                */
     VkFence fence;
     uint64_t serial;
     bool recording, submitted;
@@ -117,10 +128,17 @@ struct hlvk_frame {
     VkQueryPool *queries;
     uint32_t n_queries, max_queries;
     const char **labels;     /* of passes                                    */
-    uint32_t n_passes, max_passes;
+    uint32_t n_passes, max_labels;
 };
 
 /* ---- descriptor sets ------------------------------------------------- */
+
+struct hlvk_set_kind {
+    VkDescriptorType type;
+    uint32_t n, n_dynamic;   /* bindings, and those with an offset           */
+    VkShaderStageFlags stages;
+};
+extern const struct hlvk_set_kind hlvk_set_kinds[HLVK_SETS];
 
 struct hlvk_set {
     VkDescriptorSet set;
@@ -177,7 +195,8 @@ struct hlvk {
     uint32_t n_spare;
     struct hlvk_buf readback;
     struct hl_timing *timings;
-    uint32_t n_timings, max_timings;
+    uint64_t *stamps;        /* as read back                                 */
+    uint32_t n_timings, max_timings, max_stamps;
 
     VkImageMemoryBarrier2 barriers[HLVK_BARRIERS];
     uint32_t n_barriers;
@@ -238,7 +257,9 @@ enum hl_result hlvk_stage(struct hlvk *, const void *data, size_t bytes,
                           struct hlvk_frame **, VkBuffer *,
                           VkDeviceSize *offset);
 void hlvk_destroy(void *, char kind, uint32_t slot);
-enum hl_result hlvk_pass_reserve(struct hlvk *, struct hlvk_frame *);
+/* Make ready for one more pass, which reads storage buffers or does not. */
+enum hl_result hlvk_pass_reserve(struct hlvk *, struct hlvk_frame *,
+                                 bool storage);
 void hlvk_pass_begin(struct hlvk *, struct hlvk_frame *, const char *label);
 void hlvk_pass_end(struct hlvk *, struct hlvk_frame *);
 uint32_t hlvk_timings(void *, struct hl_timing *, uint32_t max);
@@ -266,7 +287,7 @@ void hlvk_barrier(struct hlvk *, VkCommandBuffer);
 enum hl_result hlvk_sets_open(struct hlvk *);
 void hlvk_sets_close(struct hlvk *);
 void hlvk_sets_frame(struct hlvk *);
-/* The set of one kind (0..2) with this content; keys as made in vk_pass.c. */
+/* The set of one kind with this content; keys as made in vk_pass.c. */
 enum hl_result hlvk_set_find(struct hlvk *, uint32_t kind,
                              const uint64_t *key,
                              const struct hl_bk_draw *, VkDescriptorSet *out);
@@ -276,7 +297,9 @@ enum hl_result hlvk_prog_create(void *, uint32_t,
                                 const struct hl_prog_desc *);
 void hlvk_prog_release(struct hlvk *, struct hlvk_prog *);
 
-/* vk_pass.c */
+/* vk_pass.c. Ranges of a draw for a set of uniforms or storage. */
+const struct hl_bk_range *hlvk_ranges(const struct hl_bk_draw *,
+                                      uint32_t kind);
 enum hl_result hlvk_pass_run(void *, const struct hl_bk_pass *,
                              const struct hl_bk_draw *, uint32_t);
 #endif

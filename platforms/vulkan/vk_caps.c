@@ -51,9 +51,9 @@ VkImageUsageFlags hlvk_usage(const struct hl_tex_desc *desc)
 static bool graphics_family(VkPhysicalDevice physical, uint32_t *family)
 {
     VkQueueFamilyProperties q[16];
-    uint32_t i, n = 16;
+    uint32_t n = 16;
     vkGetPhysicalDeviceQueueFamilyProperties(physical, &n, q);
-    for (i = 0; i < n; i++)
+    for (uint32_t i = 0; i < n; i++)
         if (q[i].queueFlags & VK_QUEUE_GRAPHICS_BIT) {
             *family = i;
             return true;
@@ -67,13 +67,12 @@ bool hlvk_usable(VkPhysicalDevice physical, uint32_t *family)
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES
     };
     VkPhysicalDeviceFeatures2 f2 = {
-        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, .pNext = &f13
     };
     VkPhysicalDeviceProperties p;
     vkGetPhysicalDeviceProperties(physical, &p);
     if (p.apiVersion < VK_API_VERSION_1_3)
         return false;
-    f2.pNext = &f13;
     vkGetPhysicalDeviceFeatures2(physical, &f2);
     return f13.dynamicRendering && f13.synchronization2 &&
            f13.maintenance4 && graphics_family(physical, family);
@@ -104,9 +103,9 @@ void hlvk_describe(VkPhysicalDevice physical, struct hl_device_info *out)
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES
     };
     VkPhysicalDeviceProperties2 p = {
-        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2,
+        .pNext = &driver
     };
-    p.pNext = &driver;
     vkGetPhysicalDeviceProperties2(physical, &p);
     memset(out, 0, sizeof *out);
     append(out->name, sizeof out->name, p.properties.deviceName);
@@ -120,32 +119,30 @@ void hlvk_describe(VkPhysicalDevice physical, struct hl_device_info *out)
 
 static uint8_t format_use(VkFormatFeatureFlags f)
 {
-    unsigned use = 0;
-    if (f & VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT)
-        use |= HL_USE_SAMPLED;
-    if (f & VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT)
-        use |= HL_USE_LINEAR;
-    if (f & (VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT |
-             VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT))
-        use |= HL_USE_TARGET;
-    if (f & VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BLEND_BIT)
-        use |= HL_USE_BLEND;
-    return (uint8_t)use;
+    const VkFormatFeatureFlags target =
+        VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT |
+        VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT;
+    return (uint8_t)(
+        (f & VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT ? HL_USE_SAMPLED : 0) |
+        (f & VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT
+             ? HL_USE_LINEAR : 0) |
+        (f & target ? HL_USE_TARGET : 0) |
+        (f & VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BLEND_BIT ? HL_USE_BLEND
+                                                          : 0));
 }
 
 /* Counts for images with all usages that the format has. */
 static VkSampleCountFlags format_samples(struct hlvk *v,
                                          enum hl_format format, uint8_t use)
 {
-    struct hl_tex_desc desc = { 0 };
+    struct hl_tex_desc desc = {
+        .format = format, .samples = 2,
+        .usage = use & HL_USE_SAMPLED ? HL_TEX_TARGET | HL_TEX_SAMPLED
+                                      : HL_TEX_TARGET
+    };
     VkImageFormatProperties p;
     if (!(use & HL_USE_TARGET))
         return 0;
-    desc.format = format;
-    desc.samples = 2;
-    desc.usage = HL_TEX_TARGET;
-    if (use & HL_USE_SAMPLED)
-        desc.usage |= HL_TEX_SAMPLED;
     if (vkGetPhysicalDeviceImageFormatProperties(
             v->physical, formats[format], VK_IMAGE_TYPE_2D,
             VK_IMAGE_TILING_OPTIMAL, hlvk_usage(&desc), 0, &p) != VK_SUCCESS)
@@ -158,17 +155,16 @@ static void caps_formats(struct hlvk *v, struct hl_caps *caps,
                          VkSampleCountFlags integer_samples)
 {
     VkFormatProperties2 p = { .sType = VK_STRUCTURE_TYPE_FORMAT_PROPERTIES_2 };
-    VkSampleCountFlags samples;
-    int i;
     caps->samples = limits->framebufferColorSampleCounts &
                     limits->framebufferDepthSampleCounts & 15;
-    for (i = 1; i < HL_FORMAT_COUNT; i++) {
+    for (int i = 1; i < HL_FORMAT_COUNT; i++) {
         enum hl_format format = (enum hl_format)i;
         enum hl_format_kind kind = hl_format_info(format)->kind;
         vkGetPhysicalDeviceFormatProperties2(v->physical, formats[i], &p);
         caps->format[i].use =
             format_use(p.formatProperties.optimalTilingFeatures);
-        samples = format_samples(v, format, caps->format[i].use);
+        VkSampleCountFlags samples =
+            format_samples(v, format, caps->format[i].use);
         /* The format query alone promises lavapipe's integer formats 4
          * samples, which the device's limit denies. */
         samples &= kind == HL_KIND_UINT ? integer_samples
@@ -182,11 +178,17 @@ static void caps_formats(struct hlvk *v, struct hl_caps *caps,
 
 /* lavapipe of Mesa 22.3.6 on two cores, measured. */
 static const struct hl_cost_model cost_cpu = {
-    1500.0f, 150.0f, 1.5f, 1.2f, 1.9f, 2.4f, 8.0f, 0.5f, 15000.0f
+    .draw_ns = 1500.0f, .vertex_ns = 150.0f, .pixel_ns = 1.5f,
+    .fetch_ns = 1.2f, .blend_ns = 1.9f, .light_ns = 2.4f,
+    .light_flat_ns = 1.5f, .light_gather_ns = 8.0f, .readback_ns = 0.5f,
+    .sync_ns = 15000.0f
 };
 /* Not measured: guesses at the order of magnitude for a desktop GPU. */
 static const struct hl_cost_model cost_gpu = {
-    300.0f, 0.3f, 0.005f, 0.003f, 0.01f, 0.004f, 0.004f, 1.0f, 100000.0f
+    .draw_ns = 300.0f, .vertex_ns = 0.3f, .pixel_ns = 0.005f,
+    .fetch_ns = 0.003f, .blend_ns = 0.01f, .light_ns = 0.004f,
+    .light_flat_ns = 0.004f, .light_gather_ns = 0.004f, .readback_ns = 1.0f,
+    .sync_ns = 100000.0f
 };
 
 /* ---- all ------------------------------------------------------------- */
@@ -234,24 +236,24 @@ void hlvk_caps(struct hlvk *v, struct hl_caps *caps)
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_PROPERTIES
     };
     VkPhysicalDeviceVulkan12Properties p12 = {
-        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_PROPERTIES
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_PROPERTIES,
+        .pNext = &p13
     };
     VkPhysicalDeviceVulkan11Properties p11 = {
-        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES,
+        .pNext = &p12
     };
     VkPhysicalDeviceProperties2 p = {
-        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2,
+        .pNext = &p11
     };
     struct hl_device_info info;
-    p12.pNext = &p13;
-    p11.pNext = &p12;
-    p.pNext = &p11;
     vkGetPhysicalDeviceProperties2(v->physical, &p);
     private_limits(v, &p.properties.limits, p11.maxMemoryAllocationSize,
                    p13.maxBufferSize);
     memset(caps, 0, sizeof *caps);
     hlvk_describe(v->physical, &info);
-    memcpy(caps->backend, "vulkan", 7);
+    append(caps->backend, sizeof caps->backend, hl_backend_vulkan.name);
     memcpy(caps->device, info.name, sizeof caps->device);
     memcpy(caps->driver, info.driver, sizeof caps->driver);
     caps->kind = v->kind = info.kind;

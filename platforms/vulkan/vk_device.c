@@ -30,32 +30,28 @@ static enum hl_result translate(VkResult result)
 
 enum hl_result hlvk_check(struct hlvk *v, VkResult vk, const char *what)
 {
-    enum hl_result result = translate(vk);
-    enum hl_log_id id = HL_MSG_BACKEND;
-    if (result == HL_OK)
+    enum hl_result r = translate(vk);
+    if (r == HL_OK)
         return HL_OK;
-    if (result == HL_ERR_DEVICE_LOST) {
-        v->lost = true;
-        id = HL_MSG_DEVICE;
-    } else if (result == HL_ERR_MEMORY) {
-        id = HL_MSG_MEMORY;
-    }
-    hl_bk_log(v->device, HL_LOG_ERROR, id, what, ": ",
-              hl_result_name(result));
-    return result;
+    v->lost |= r == HL_ERR_DEVICE_LOST;
+    hl_bk_log(v->device, HL_LOG_ERROR,
+              r == HL_ERR_DEVICE_LOST ? HL_MSG_DEVICE
+              : r == HL_ERR_MEMORY ? HL_MSG_MEMORY : HL_MSG_BACKEND,
+              what, ": ", hl_result_name(r));
+    return r;
 }
 
 bool hlvk_grow(struct hlvk *v, void *array, uint32_t *max, uint32_t need,
                size_t item)
 {
     uint32_t more = *max ? *max : 16;
-    void *old, *grown;
+    void *old;
     if (need <= *max)
         return true;
     while (more < need)
         more *= 2;
     memcpy(&old, array, sizeof old);
-    grown = hl_bk_alloc(v->device, more * item);
+    void *grown = hl_bk_alloc(v->device, more * item);
     if (!grown)
         return false;
     if (old)
@@ -95,30 +91,26 @@ static VKAPI_ATTR VkBool32 VKAPI_CALL message(
 
 static VkDebugUtilsMessengerCreateInfoEXT messenger(struct hl_device *device)
 {
-    VkDebugUtilsMessengerCreateInfoEXT info = {
-        .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT
+    return (VkDebugUtilsMessengerCreateInfoEXT){
+        .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
+        .messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT |
+                           VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT,
+        /* Not GENERAL: there the loader tells of drivers it cannot load. */
+        .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT,
+        .pfnUserCallback = message, .pUserData = device
     };
-    info.messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT |
-                           VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT;
-    /* Not GENERAL: the loader tells of drivers that it cannot load there. */
-    info.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT;
-    info.pfnUserCallback = message;
-    info.pUserData = device;
-    return info;
 }
 
 static bool layer_present(struct hl_device *device)
 {
-    VkLayerProperties *layers;
-    uint32_t i, n = 0;
+    uint32_t n = 0;
     bool found = false;
     if (vkEnumerateInstanceLayerProperties(&n, NULL) != VK_SUCCESS || !n)
         return false;
-    layers = hl_bk_alloc(device, n * sizeof *layers);
-    if (!layers)
-        return false;
-    if (vkEnumerateInstanceLayerProperties(&n, layers) >= VK_SUCCESS)
-        for (i = 0; i < n; i++)
+    VkLayerProperties *layers = hl_bk_alloc(device, n * sizeof *layers);
+    if (layers &&
+        vkEnumerateInstanceLayerProperties(&n, layers) >= VK_SUCCESS)
+        for (uint32_t i = 0; i < n; i++)
             found |= !strcmp(layers[i].layerName, layer_name);
     hl_bk_free(device, layers);
     return found;
@@ -155,39 +147,37 @@ static VkResult instance_make(struct hl_device *device, VkInstance *out)
         VK_EXT_DEBUG_UTILS_EXTENSION_NAME,
         VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME
     };
-    VkApplicationInfo app = { .sType = VK_STRUCTURE_TYPE_APPLICATION_INFO };
-    VkValidationFeaturesEXT features = {
-        .sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT
+    VkApplicationInfo app = {
+        .sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
+        .pEngineName = "halflight", .engineVersion = HL_VERSION,
+        .apiVersion = VK_API_VERSION_1_3
     };
-    VkInstanceCreateInfo info = { .sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO };
+    /* The messenger in the chain hears the creation itself. */
     VkDebugUtilsMessengerCreateInfoEXT debug = messenger(device);
-    app.pEngineName = "halflight";
-    app.engineVersion = HL_VERSION;
-    app.apiVersion = VK_API_VERSION_1_3;
-    info.pApplicationInfo = &app;
-    if (device) {
-        /* The messenger in the chain hears the creation itself. */
-        features.pNext = &debug;
-        features.enabledValidationFeatureCount = 1;
-        features.pEnabledValidationFeatures = sync;
-        info.pNext = &features;
-        info.enabledLayerCount = 1;
-        info.ppEnabledLayerNames = layers;
-        info.enabledExtensionCount = 2;
-        info.ppEnabledExtensionNames = extensions;
-    }
+    VkValidationFeaturesEXT features = {
+        .sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT, .pNext = &debug,
+        .enabledValidationFeatureCount = 1,
+        .pEnabledValidationFeatures = sync
+    };
+    VkInstanceCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
+        .pNext = device ? &features : NULL, .pApplicationInfo = &app,
+        .enabledLayerCount = device ? 1 : 0, .ppEnabledLayerNames = layers,
+        .enabledExtensionCount = device ? 2 : 0,
+        .ppEnabledExtensionNames = extensions
+    };
     return vkCreateInstance(&info, NULL, out);
 }
 
 static enum hl_result instance_open(struct hlvk *v, bool validation)
 {
-    VkResult result;
     if (validation && !layer_present(v->device)) {
         hl_bk_log(v->device, HL_LOG_WARNING, HL_MSG_VALIDATION, layer_name,
                   " is not installed: nothing is validated", NULL);
         validation = false;
     }
-    result = instance_make(validation ? v->device : NULL, &v->instance);
+    VkResult result = instance_make(validation ? v->device : NULL,
+                                    &v->instance);
     if (result == VK_SUCCESS && validation)
         messenger_make(v);
     return hlvk_check(v, result, "no Vulkan driver: vkCreateInstance");
@@ -213,11 +203,11 @@ static uint32_t candidates(VkInstance instance,
                            VkPhysicalDevice out[MAX_DEVICES])
 {
     VkPhysicalDevice all[MAX_DEVICES];
-    uint32_t i, r, family, n = MAX_DEVICES, m = 0;
+    uint32_t family, n = MAX_DEVICES, m = 0;
     if (vkEnumeratePhysicalDevices(instance, &n, all) < VK_SUCCESS)
         return 0;
-    for (r = 0; r < 5; r++)
-        for (i = 0; i < n; i++)
+    for (uint32_t r = 0; r < 5; r++)
+        for (uint32_t i = 0; i < n; i++)
             if (rank(all[i]) == r && hlvk_usable(all[i], &family))
                 out[m++] = all[i];
     return m;
@@ -229,13 +219,12 @@ static enum hl_result list(const struct hl_hooks *hooks,
 {
     VkPhysicalDevice found[MAX_DEVICES];
     VkInstance instance;
-    uint32_t i;
     (void)hooks;
     *n = 0;
     if (instance_make(NULL, &instance) != VK_SUCCESS)
         return HL_ERR_NO_DEVICE;
     *n = candidates(instance, found);
-    for (i = 0; i < *n && i < max; i++)
+    for (uint32_t i = 0; i < *n && i < max; i++)
         hlvk_describe(found[i], &out[i]);
     vkDestroyInstance(instance, NULL);
     return *n ? HL_OK : HL_ERR_NO_DEVICE;
@@ -260,16 +249,15 @@ static uint32_t pick(const char *want, const VkPhysicalDevice *found,
                      uint32_t n)
 {
     struct hl_device_info info;
-    uint32_t i, index = 0;
-    size_t digits;
+    uint32_t index = 0;
     if (!want || !*want)
         return 0;
-    digits = strspn(want, "0123456789");
-    for (i = 0; i < digits && index < n; i++)
+    size_t digits = strspn(want, "0123456789");
+    for (size_t i = 0; i < digits && index < n; i++)
         index = index * 10 + (uint32_t)(want[i] - '0');
     if (!want[digits] && index < n)
         return index;
-    for (i = 0; i < n; i++) {
+    for (uint32_t i = 0; i < n; i++) {
         hlvk_describe(found[i], &info);
         if (contains(info.name, want))
             return i;
@@ -299,30 +287,32 @@ static enum hl_result choose(struct hlvk *v, const char *want)
 static enum hl_result connect(struct hlvk *v)
 {
     static const float priority = 1.0f;
-    VkPhysicalDeviceVulkan13Features f13 = {
-        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES
-    };
-    VkPhysicalDeviceFeatures has, want = { 0 };
-    VkDeviceQueueCreateInfo queue = {
-        .sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO
-    };
-    VkDeviceCreateInfo info = { .sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO };
-    enum hl_result result;
+    VkPhysicalDeviceFeatures has;
     vkGetPhysicalDeviceFeatures(v->physical, &has);
-    want.sampleRateShading = has.sampleRateShading;
-    f13.dynamicRendering = f13.synchronization2 = f13.maintenance4 = VK_TRUE;
-    queue.queueFamilyIndex = v->family;
-    queue.queueCount = 1;
-    queue.pQueuePriorities = &priority;
-    info.pNext = &f13;
-    info.queueCreateInfoCount = 1;
-    info.pQueueCreateInfos = &queue;
-    info.pEnabledFeatures = &want;
-    result = hlvk_check(v, vkCreateDevice(v->physical, &info, NULL, &v->vk),
-                        "vkCreateDevice");
-    if (!result)
+    VkPhysicalDeviceFeatures want = {
+        .sampleRateShading = has.sampleRateShading
+    };
+    VkPhysicalDeviceVulkan13Features f13 = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES,
+        .synchronization2 = VK_TRUE, .dynamicRendering = VK_TRUE,
+        .maintenance4 = VK_TRUE
+    };
+    VkDeviceQueueCreateInfo queue = {
+        .sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
+        .queueFamilyIndex = v->family,
+        .queueCount = 1, .pQueuePriorities = &priority
+    };
+    VkDeviceCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, .pNext = &f13,
+        .queueCreateInfoCount = 1, .pQueueCreateInfos = &queue,
+        .pEnabledFeatures = &want
+    };
+    enum hl_result r = hlvk_check(
+        v, vkCreateDevice(v->physical, &info, NULL, &v->vk),
+        "vkCreateDevice");
+    if (!r)
         vkGetDeviceQueue(v->vk, v->family, 0, &v->queue);
-    return result;
+    return r;
 }
 
 static enum hl_result borrow(struct hlvk *v,
@@ -362,12 +352,11 @@ static enum hl_result slots_open(struct hlvk *v,
 
 static void slots_close(struct hlvk *v)
 {
-    uint32_t i;
-    for (i = 0; v->bufs && i < v->max_bufs; i++)
+    for (uint32_t i = 0; v->vk && i < v->max_bufs; i++)
         hlvk_destroy(v, 'b', i);
-    for (i = 0; v->texs && i < v->max_texs; i++)
+    for (uint32_t i = 0; v->vk && i < v->max_texs; i++)
         hlvk_destroy(v, 't', i);
-    for (i = 0; v->progs && i < v->max_progs; i++)
+    for (uint32_t i = 0; v->vk && i < v->max_progs; i++)
         hlvk_destroy(v, 'p', i);
     hl_bk_free(v->device, v->bufs);
     hl_bk_free(v->device, v->texs);
@@ -376,14 +365,12 @@ static void slots_close(struct hlvk *v)
 
 static void instance_close(struct hlvk *v)
 {
-    PFN_vkDestroyDebugUtilsMessengerEXT destroy;
     if (!v->borrowed && v->vk)
         vkDestroyDevice(v->vk, NULL);
-    if (v->messenger) {
-        destroy = (PFN_vkDestroyDebugUtilsMessengerEXT)vkGetInstanceProcAddr(
-            v->instance, "vkDestroyDebugUtilsMessengerEXT");
-        destroy(v->instance, v->messenger, NULL);
-    }
+    if (v->messenger)
+        ((PFN_vkDestroyDebugUtilsMessengerEXT)vkGetInstanceProcAddr(
+            v->instance, "vkDestroyDebugUtilsMessengerEXT"))(
+            v->instance, v->messenger, NULL);
     if (!v->borrowed && v->instance)
         vkDestroyInstance(v->instance, NULL);
 }
@@ -391,19 +378,24 @@ static void instance_close(struct hlvk *v)
 static void close_device(void *state)
 {
     struct hlvk *v = state;
-    if (v->vk) {
-        /* Recorded but never submitted work is dropped with its pool. */
+    if (v->vk)
         hlvk_frames_close(v);
-        slots_close(v);
+    slots_close(v);
+    if (v->vk) {
         hlvk_sets_close(v);
         hlvk_memory_close(v);
-    } else {
-        hl_bk_free(v->device, v->bufs);
-        hl_bk_free(v->device, v->texs);
-        hl_bk_free(v->device, v->progs);
     }
     instance_close(v);
     memset(v, 0, sizeof *v);
+}
+
+static enum hl_result open_own(struct hlvk *v,
+                                  const struct hl_device_desc *desc)
+{
+    enum hl_result r = instance_open(v, desc->validation);
+    if (!r)
+        r = choose(v, desc->device);
+    return r ? r : connect(v);
 }
 
 static enum hl_result open_device(void *state, struct hl_device *device,
@@ -411,29 +403,21 @@ static enum hl_result open_device(void *state, struct hl_device *device,
                                   struct hl_caps *caps)
 {
     struct hlvk *v = state;
-    enum hl_result result;
     v->device = device;
-    result = slots_open(v, desc);
-    if (!result && desc->native) {
-        result = borrow(v, desc->native, desc->validation);
-    } else {
-        if (!result)
-            result = instance_open(v, desc->validation);
-        if (!result)
-            result = choose(v, desc->device);
-        if (!result)
-            result = connect(v);
-    }
-    if (!result) {
+    enum hl_result r = slots_open(v, desc);
+    if (!r)
+        r = desc->native ? borrow(v, desc->native, desc->validation)
+                         : open_own(v, desc);
+    if (!r) {
         names_enable(v);
         hlvk_caps(v, caps);
-        result = hlvk_frames_open(v);
+        r = hlvk_frames_open(v);
     }
-    if (!result)
-        result = hlvk_sets_open(v);
-    if (result)
+    if (!r)
+        r = hlvk_sets_open(v);
+    if (r)
         close_device(v);
-    return result;
+    return r;
 }
 
 const struct hl_backend hl_backend_vulkan = {

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Zlib */
-/* Frames: what is recorded between two submits, in call order, in one command
- * buffer. One records while the other executes. After a submit at most one is
- * unfinished, so an embedder that fills two sets of dynamic buffers in turn
- * never writes what is being read. */
+/* Frames: what is recorded between two submits, in call order. One records
+ * while the other executes. After a submit at most one is unfinished, so an
+ * embedder that fills two sets of dynamic buffers in turn never writes what
+ * is being read. */
 #include <string.h>
 #include "platforms/vulkan/vk.h"
 
 enum {
-    QUERIES = 256,           /* a pool: two timestamps a pass                */
+    QUERIES = 256,           /* timestamps a pool                            */
     CHUNK_BYTES = 4 << 20,   /* staging                                      */
     SPARE_CHUNKS = 8,
     STAGED_BYTES = 64 << 20  /* uploads alone are submitted from here on     */
@@ -25,7 +25,6 @@ static enum hl_result chunk_make(struct hlvk *v, VkDeviceSize bytes,
                                  struct hlvk_chunk **out)
 {
     struct hlvk_chunk *c = v->spare;
-    enum hl_result result;
     if (c && bytes <= CHUNK_BYTES) {
         v->spare = c->next;
         v->n_spare--;
@@ -36,13 +35,14 @@ static enum hl_result chunk_make(struct hlvk *v, VkDeviceSize bytes,
     if (!c)
         return HL_ERR_MEMORY;
     c->bytes = bytes < CHUNK_BYTES ? CHUNK_BYTES : bytes;
-    result = hlvk_buf_make(v, c->bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
-                           HLVK_STAGE, &c->buffer, &c->memory);
-    if (result)
+    enum hl_result r = hlvk_buf_make(v, c->bytes,
+                                     VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+                                     HLVK_STAGE, &c->buffer, &c->memory);
+    if (r)
         hl_bk_free(v->device, c);
     else
         *out = c;
-    return result;
+    return r;
 }
 
 static void chunks_release(struct hlvk *v, struct hlvk_frame *f)
@@ -67,21 +67,20 @@ enum hl_result hlvk_stage(struct hlvk *v, const void *data, size_t bytes,
                           VkDeviceSize *offset)
 {
     struct hlvk_frame *f = &v->frames[v->frame];
-    struct hlvk_chunk *c;
-    enum hl_result result = HL_OK;
+    enum hl_result r = HL_OK;
     /* Loading a scene holds little staging memory. A frame with passes is
      * left whole: its timings belong together. */
     if (f->staged > STAGED_BYTES && f->n_passes == 0)
-        result = hlvk_flush(v, false);
-    if (!result)
-        result = hlvk_begin(v, &f);
-    if (result)
-        return result;
-    c = f->chunks;
+        r = hlvk_flush(v, false);
+    if (!r)
+        r = hlvk_begin(v, &f);
+    if (r)
+        return r;
+    struct hlvk_chunk *c = f->chunks;
     if (!c || c->bytes - c->used < bytes) {
-        result = chunk_make(v, bytes, &c);
-        if (result)
-            return result;
+        r = chunk_make(v, bytes, &c);
+        if (r)
+            return r;
         c->next = f->chunks;
         f->chunks = c;
     }
@@ -150,79 +149,82 @@ void hlvk_destroy(void *state, char kind, uint32_t slot)
     v->garbage = object;
 }
 
-/* ---- timings --------------------------------------------------------- */
+/* ---- timings ----------------------------------------------------------- */
 
-enum hl_result hlvk_pass_reserve(struct hlvk *v, struct hlvk_frame *f)
+/* One timestamp before the first pass and one after each: a pass's time runs
+ * from the end of the pass before it. On lavapipe each drains the machine, so
+ * they are not taken in pairs. */
+static enum hl_result reserve_stamps(struct hlvk *v, struct hlvk_frame *f)
 {
     VkQueryPoolCreateInfo info = {
-        .sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO
+        .sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
+        .queryType = VK_QUERY_TYPE_TIMESTAMP, .queryCount = QUERIES
     };
-    uint32_t pool = f->n_passes * 2 / QUERIES;
-    VkQueryPool made;
-    enum hl_result result;
+    uint32_t pools = (f->n_passes + 1) / QUERIES + 1;
     if (v->tick_ms <= 0.0)
         return HL_OK;
-    if (!hlvk_grow(v, &f->labels, &f->max_passes, f->n_passes + 1,
+    if (!hlvk_grow(v, &f->labels, &f->max_labels, f->n_passes + 1,
                    sizeof *f->labels) ||
-        !hlvk_grow(v, &f->queries, &f->max_queries, pool + 1,
+        !hlvk_grow(v, &f->queries, &f->max_queries, pools,
                    sizeof *f->queries))
         return HL_ERR_MEMORY;
-    if (pool == f->n_queries) {
-        info.queryType = VK_QUERY_TYPE_TIMESTAMP;
-        info.queryCount = QUERIES;
-        result = hlvk_check(v, vkCreateQueryPool(v->vk, &info, NULL, &made),
-                            "vkCreateQueryPool");
-        if (result)
-            return result;
-        f->queries[f->n_queries++] = made;
+    while (f->n_queries < pools) {
+        enum hl_result r = hlvk_check(
+            v, vkCreateQueryPool(v->vk, &info, NULL,
+                                 &f->queries[f->n_queries]),
+            "vkCreateQueryPool");
+        if (r)
+            return r;
+        f->n_queries++;
     }
     return HL_OK;
 }
 
-static void stamp(struct hlvk *v, struct hlvk_frame *f, uint32_t query)
+static void stamp(struct hlvk_frame *f, uint32_t query)
 {
-    if (v->tick_ms > 0.0)
-        vkCmdWriteTimestamp2(f->cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                             f->queries[query / QUERIES], query % QUERIES);
+    VkQueryPool pool = f->queries[query / QUERIES];
+    if (query % QUERIES == 0)
+        vkCmdResetQueryPool(f->cmd, pool, 0, QUERIES);
+    vkCmdWriteTimestamp2(f->cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, pool,
+                         query % QUERIES);
 }
 
 void hlvk_pass_begin(struct hlvk *v, struct hlvk_frame *f, const char *label)
 {
-    uint32_t query = f->n_passes * 2;
     if (v->tick_ms <= 0.0)
         return;
     f->labels[f->n_passes] = label;
-    if (query % QUERIES == 0)
-        vkCmdResetQueryPool(f->cmd, f->queries[query / QUERIES], 0, QUERIES);
-    stamp(v, f, query);
+    if (f->n_passes == 0)
+        stamp(f, 0);
 }
 
 void hlvk_pass_end(struct hlvk *v, struct hlvk_frame *f)
 {
-    stamp(v, f, f->n_passes * 2 + 1);
     f->n_passes++;
+    if (v->tick_ms > 0.0)
+        stamp(f, f->n_passes);
 }
 
 static void read_timings(struct hlvk *v, struct hlvk_frame *f)
 {
-    uint64_t t[QUERIES];
-    uint32_t i, n, done;
+    uint32_t n = f->n_passes + 1;
     v->n_timings = 0;
-    if (v->tick_ms <= 0.0 || !hlvk_grow(v, &v->timings, &v->max_timings,
-                                        f->n_passes, sizeof *v->timings))
+    if (v->tick_ms <= 0.0 ||
+        !hlvk_grow(v, &v->timings, &v->max_timings, n, sizeof *v->timings) ||
+        !hlvk_grow(v, &v->stamps, &v->max_stamps, n, sizeof *v->stamps))
         return;
-    for (done = 0; done < f->n_passes; done += n) {
-        n = f->n_passes - done < QUERIES / 2 ? f->n_passes - done
-                                             : QUERIES / 2;
-        if (vkGetQueryPoolResults(v->vk, f->queries[done * 2 / QUERIES], 0,
-                                  n * 2, n * 2 * sizeof *t, t, sizeof *t,
+    for (uint32_t at = 0; at < n; at += QUERIES) {
+        uint32_t k = n - at < QUERIES ? n - at : QUERIES;
+        if (vkGetQueryPoolResults(v->vk, f->queries[at / QUERIES], 0, k,
+                                  k * sizeof *v->stamps, v->stamps + at,
+                                  sizeof *v->stamps,
                                   VK_QUERY_RESULT_64_BIT) != VK_SUCCESS)
             return;
-        for (i = 0; i < n; i++) {
-            uint64_t ticks = (t[i * 2 + 1] - t[i * 2]) & v->tick_mask;
-            v->timings[done + i].label = f->labels[done + i];
-            v->timings[done + i].ms = (double)ticks * v->tick_ms;
-        }
+    }
+    for (uint32_t i = 0; i < f->n_passes; i++) {
+        uint64_t ticks = (v->stamps[i + 1] - v->stamps[i]) & v->tick_mask;
+        v->timings[i].label = f->labels[i];
+        v->timings[i].ms = (double)ticks * v->tick_ms;
     }
     v->n_timings = f->n_passes;
 }
@@ -236,62 +238,7 @@ uint32_t hlvk_timings(void *state, struct hl_timing *out, uint32_t max)
     return v->n_timings;
 }
 
-/* ---- submit ---------------------------------------------------------- */
-
-enum hl_result hlvk_begin(struct hlvk *v, struct hlvk_frame **out)
-{
-    VkCommandBufferBeginInfo info = {
-        .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO
-    };
-    struct hlvk_frame *f = *out = &v->frames[v->frame];
-    enum hl_result result;
-    if (v->lost)
-        return HL_ERR_DEVICE_LOST;
-    if (f->recording)
-        return HL_OK;
-    info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
-    result = hlvk_check(v, vkResetCommandPool(v->vk, f->pool, 0),
-                        "vkResetCommandPool");
-    if (!result)
-        result = hlvk_check(v, vkBeginCommandBuffer(f->cmd, &info),
-                            "vkBeginCommandBuffer");
-    if (result)
-        return result;
-    f->serial = ++v->serial;
-    f->recording = true;
-    f->n_passes = 0;
-    hlvk_sets_frame(v);
-    return HL_OK;
-}
-
-static enum hl_result retire(struct hlvk *v, struct hlvk_frame *f)
-{
-    enum hl_result result;
-    if (!f->submitted)
-        return HL_OK;
-    result = hlvk_check(v, vkWaitForFences(v->vk, 1, &f->fence, VK_TRUE,
-                                           UINT64_MAX), "vkWaitForFences");
-    if (!result)
-        result = hlvk_check(v, vkResetFences(v->vk, 1, &f->fence),
-                            "vkResetFences");
-    if (result)
-        return result;
-    f->submitted = false;
-    v->completed = f->serial;
-    chunks_release(v, f);
-    collect(v);
-    return HL_OK;
-}
-
-enum hl_result hlvk_wait(struct hlvk *v)
-{
-    uint32_t i;
-    enum hl_result result = HL_OK;
-    /* From the frame that records on: the other one is the younger. */
-    for (i = 0; i < HLVK_FRAMES && !result; i++)
-        result = retire(v, &v->frames[(v->frame + i) % HLVK_FRAMES]);
-    return result;
-}
+/* ---- command buffers --------------------------------------------------- */
 
 /* Textures' layouts are tracked as if all that was recorded had run; once it
  * cannot, nothing on this device can be trusted. */
@@ -303,19 +250,115 @@ static enum hl_result cannot_run(struct hlvk *v)
     return HL_ERR_DEVICE_LOST;
 }
 
-static enum hl_result hand_over(struct hlvk *v, struct hlvk_frame *f)
+static enum hl_result cmd_begin(struct hlvk *v, struct hlvk_frame *f)
 {
-    VkCommandBufferSubmitInfo cmd = {
-        .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO
+    static const VkCommandBufferBeginInfo info = {
+        .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
+        .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT
     };
-    VkSubmitInfo2 info = { .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2 };
-    cmd.commandBuffer = f->cmd;
-    info.commandBufferInfoCount = 1;
-    info.pCommandBufferInfos = &cmd;
+    VkCommandBufferAllocateInfo make = {
+        .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+        .commandPool = f->pool, .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
+        .commandBufferCount = 1
+    };
+    enum hl_result r = HL_OK;
+    if (!hlvk_grow(v, &f->cmds, &f->max_cmds, f->n_cmds + 1,
+                   sizeof *f->cmds))
+        return HL_ERR_MEMORY;
+    if (f->n_cmds == f->n_made) {
+        r = hlvk_check(v, vkAllocateCommandBuffers(v->vk, &make,
+                                                   &f->cmds[f->n_made]),
+                       "vkAllocateCommandBuffers");
+        f->n_made += !r;
+    }
+    if (!r)
+        r = hlvk_check(v, vkBeginCommandBuffer(f->cmds[f->n_cmds], &info),
+                       "vkBeginCommandBuffer");
+    if (r)
+        return r;
+    f->cmd = f->cmds[f->n_cmds++];
+    f->storage = false;
+    return HL_OK;
+}
+
+enum hl_result hlvk_begin(struct hlvk *v, struct hlvk_frame **out)
+{
+    struct hlvk_frame *f = *out = &v->frames[v->frame];
+    if (v->lost)
+        return HL_ERR_DEVICE_LOST;
+    if (f->recording)
+        return HL_OK;
+    f->n_cmds = 0;
+    enum hl_result r = hlvk_check(v, vkResetCommandPool(v->vk, f->pool, 0),
+                                  "vkResetCommandPool");
+    if (!r)
+        r = cmd_begin(v, f);
+    if (r)
+        return r;
+    f->serial = ++v->serial;
+    f->recording = true;
+    f->n_passes = 0;
+    hlvk_sets_frame(v);
+    return HL_OK;
+}
+
+/* lavapipe goes on paying for a bound storage buffer, 14 us a draw, until its
+ * command buffer ends: passes that read none do not follow in the same. */
+enum hl_result hlvk_pass_reserve(struct hlvk *v, struct hlvk_frame *f,
+                                 bool storage)
+{
+    enum hl_result r = reserve_stamps(v, f);
+    VkCommandBuffer old = f->cmd;
+    if (!r && f->storage && !storage) {
+        r = cmd_begin(v, f);
+        if (!r && hlvk_check(v, vkEndCommandBuffer(old),
+                             "vkEndCommandBuffer"))
+            return cannot_run(v);
+    }
+    f->storage |= !r && storage;
+    return r;
+}
+
+/* ---- submit ------------------------------------------------------------ */
+
+static enum hl_result retire(struct hlvk *v, struct hlvk_frame *f)
+{
+    if (!f->submitted)
+        return HL_OK;
+    enum hl_result r = hlvk_check(
+        v, vkWaitForFences(v->vk, 1, &f->fence, VK_TRUE, UINT64_MAX),
+        "vkWaitForFences");
+    if (!r)
+        r = hlvk_check(v, vkResetFences(v->vk, 1, &f->fence),
+                       "vkResetFences");
+    if (r)
+        return r;
+    f->submitted = false;
+    v->completed = f->serial;
+    chunks_release(v, f);
+    collect(v);
+    return HL_OK;
+}
+
+enum hl_result hlvk_wait(struct hlvk *v)
+{
+    enum hl_result r = HL_OK;
+    /* From the frame that records on: the other one is the younger. */
+    for (uint32_t i = 0; i < HLVK_FRAMES && !r; i++)
+        r = retire(v, &v->frames[(v->frame + i) % HLVK_FRAMES]);
+    return r;
+}
+
+static enum hl_result submit_frame(struct hlvk *v, struct hlvk_frame *f)
+{
+    VkSubmitInfo info = {
+        .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
+        .commandBufferCount = f->n_cmds, .pCommandBuffers = f->cmds
+    };
     f->recording = false;
     if (hlvk_check(v, vkEndCommandBuffer(f->cmd), "vkEndCommandBuffer") ||
-        hlvk_check(v, vkQueueSubmit2(v->queue, 1, &info, f->fence),
-                   "vkQueueSubmit2"))
+        hlvk_check(v, vkQueueSubmit(v->queue, 1, &info, f->fence),
+                   "vkQueueSubmit"))
         return cannot_run(v);
     f->submitted = true;
     v->frame = (v->frame + 1) % HLVK_FRAMES;
@@ -326,14 +369,14 @@ enum hl_result hlvk_flush(struct hlvk *v, bool wait)
 {
     struct hlvk_frame *f = &v->frames[v->frame];
     bool recorded = f->recording;
-    enum hl_result result = v->lost ? HL_ERR_DEVICE_LOST : HL_OK;
-    if (!result && recorded)
-        result = hand_over(v, f);
-    if (!result)
-        result = wait ? hlvk_wait(v) : retire(v, &v->frames[v->frame]);
-    if (!result && wait && recorded && f->n_passes)
+    enum hl_result r = v->lost ? HL_ERR_DEVICE_LOST : HL_OK;
+    if (!r && recorded)
+        r = submit_frame(v, f);
+    if (!r)
+        r = wait ? hlvk_wait(v) : retire(v, &v->frames[v->frame]);
+    if (!r && wait && recorded && f->n_passes)
         read_timings(v, f);
-    return result;
+    return r;
 }
 
 enum hl_result hlvk_submit(void *state, bool wait)
@@ -349,63 +392,53 @@ enum hl_result hlvk_submit(void *state, bool wait)
 static enum hl_result frame_open(struct hlvk *v, struct hlvk_frame *f)
 {
     VkCommandPoolCreateInfo pool = {
-        .sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO
+        .sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
+        .flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT,
+        .queueFamilyIndex = v->family
     };
-    VkCommandBufferAllocateInfo cmd = {
-        .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO
+    VkFenceCreateInfo fence = {
+        .sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO
     };
-    VkFenceCreateInfo fence = { .sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO };
-    enum hl_result result;
-    pool.flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT;
-    pool.queueFamilyIndex = v->family;
-    result = hlvk_check(v, vkCreateCommandPool(v->vk, &pool, NULL, &f->pool),
-                        "vkCreateCommandPool");
-    if (result)
-        return result;
-    cmd.commandPool = f->pool;
-    cmd.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
-    cmd.commandBufferCount = 1;
-    result = hlvk_check(v, vkAllocateCommandBuffers(v->vk, &cmd, &f->cmd),
-                        "vkAllocateCommandBuffers");
-    if (!result)
-        result = hlvk_check(v, vkCreateFence(v->vk, &fence, NULL, &f->fence),
-                            "vkCreateFence");
-    return result;
+    enum hl_result r = hlvk_check(
+        v, vkCreateCommandPool(v->vk, &pool, NULL, &f->pool),
+        "vkCreateCommandPool");
+    if (!r)
+        r = hlvk_check(v, vkCreateFence(v->vk, &fence, NULL, &f->fence),
+                       "vkCreateFence");
+    return r;
 }
 
 enum hl_result hlvk_frames_open(struct hlvk *v)
 {
-    uint32_t i;
-    enum hl_result result = HL_OK;
-    for (i = 0; i < HLVK_FRAMES && !result; i++)
-        result = frame_open(v, &v->frames[i]);
-    return result;
+    enum hl_result r = HL_OK;
+    for (int i = 0; i < HLVK_FRAMES && !r; i++)
+        r = frame_open(v, &v->frames[i]);
+    return r;
 }
 
 static void frame_close(struct hlvk *v, struct hlvk_frame *f)
 {
-    uint32_t i;
     /* Recorded but never submitted work goes with its pool. */
     vkDestroyCommandPool(v->vk, f->pool, NULL);
     vkDestroyFence(v->vk, f->fence, NULL);
-    for (i = 0; i < f->n_queries; i++)
+    for (uint32_t i = 0; i < f->n_queries; i++)
         vkDestroyQueryPool(v->vk, f->queries[i], NULL);
     hl_bk_free(v->device, f->queries);
+    hl_bk_free(v->device, f->cmds);
     hl_bk_free(v->device, f->labels);
     chunks_release(v, f);
 }
 
 void hlvk_frames_close(struct hlvk *v)
 {
-    uint32_t i;
     /* Only our own work is waited for: the queue may be an embedder's. A
      * lost device gives errors here, and may be taken apart all the same. */
-    for (i = 0; i < HLVK_FRAMES; i++)
+    for (uint32_t i = 0; i < HLVK_FRAMES; i++)
         if (v->frames[i].submitted)
             vkWaitForFences(v->vk, 1, &v->frames[i].fence, VK_TRUE,
                             UINT64_MAX);
     v->completed = v->serial;
-    for (i = 0; i < HLVK_FRAMES; i++)
+    for (uint32_t i = 0; i < HLVK_FRAMES; i++)
         frame_close(v, &v->frames[i]);
     while (v->spare) {
         struct hlvk_chunk *c = v->spare;
@@ -413,6 +446,7 @@ void hlvk_frames_close(struct hlvk *v)
         chunk_destroy(v, c);
     }
     hl_bk_free(v->device, v->timings);
+    hl_bk_free(v->device, v->stamps);
     collect(v);
     if (v->readback.buffer)
         hlvk_buf_unmake(v, v->readback.buffer, &v->readback.memory);

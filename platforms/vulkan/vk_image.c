@@ -94,91 +94,119 @@ void hlvk_barrier(struct hlvk *v, VkCommandBuffer cmd)
         VK_ACCESS_2_VERTEX_ATTRIBUTE_READ_BIT | VK_ACCESS_2_INDEX_READ_BIT |
             VK_ACCESS_2_UNIFORM_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_READ_BIT
     };
-    VkDependencyInfo info = { .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO };
     if (!v->n_barriers && !v->copied)
         return;
-    info.memoryBarrierCount = v->copied;
-    info.pMemoryBarriers = &copied;
-    info.imageMemoryBarrierCount = v->n_barriers;
-    info.pImageMemoryBarriers = v->barriers;
+    VkDependencyInfo info = {
+        .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
+        .memoryBarrierCount = v->copied, .pMemoryBarriers = &copied,
+        .imageMemoryBarrierCount = v->n_barriers,
+        .pImageMemoryBarriers = v->barriers
+    };
     vkCmdPipelineBarrier2(cmd, &info);
     v->n_barriers = 0;
     v->copied = false;
 }
 
-/* ---- create and destroy ---------------------------------------------- */
+/* ---- create and destroy ------------------------------------------------ */
+
+/* What caps cannot say, because it depends on the usage as a whole. */
+static enum hl_result check_image(struct hlvk *v,
+                                  const VkImageCreateInfo *info)
+{
+    VkImageFormatProperties can;
+    enum hl_result r = hlvk_check(
+        v, vkGetPhysicalDeviceImageFormatProperties(
+               v->physical, info->format, info->imageType, info->tiling,
+               info->usage, info->flags, &can),
+        "a texture of this format and usage");
+    if (!r && (info->extent.width > can.maxExtent.width ||
+               info->extent.height > can.maxExtent.height ||
+               !(can.sampleCounts & info->samples)))
+        r = hlvk_check(v, VK_ERROR_FORMAT_NOT_SUPPORTED,
+                       "a texture of this format, size and samples");
+    return r;
+}
 
 static enum hl_result image_make(struct hlvk *v, struct hlvk_tex *t,
                                  const struct hl_tex_desc *desc)
 {
-    VkImageCreateInfo info = { .sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO };
-    VkImageFormatProperties can;
+    const VkFormat views[2] = {
+        hlvk_format(desc->format), hlvk_format(desc->sample_as)
+    };
+    VkImageFormatListCreateInfo list = {
+        .sType = VK_STRUCTURE_TYPE_IMAGE_FORMAT_LIST_CREATE_INFO,
+        .viewFormatCount = 2, .pViewFormats = views
+    };
+    VkImageCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
+        .imageType = VK_IMAGE_TYPE_2D, .format = views[0],
+        .extent = { desc->width, desc->height, 1 },
+        .mipLevels = desc->mips, .arrayLayers = 1,
+        .samples = (VkSampleCountFlagBits)desc->samples,
+        .tiling = VK_IMAGE_TILING_OPTIMAL, .usage = hlvk_usage(desc)
+    };
+    if (desc->sample_as != desc->format) {
+        info.flags = VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT;
+        info.pNext = &list;
+    }
+    enum hl_result r = check_image(v, &info);
+    if (!r)
+        r = hlvk_check(v, vkCreateImage(v->vk, &info, NULL, &t->image),
+                       "vkCreateImage");
+    if (r)
+        return r;
     VkMemoryRequirements need;
-    enum hl_result result;
-    info.imageType = VK_IMAGE_TYPE_2D;
-    info.format = hlvk_format(desc->format);
-    info.extent.width = desc->width;
-    info.extent.height = desc->height;
-    info.extent.depth = 1;
-    info.mipLevels = desc->mips;
-    info.arrayLayers = 1;
-    info.samples = (VkSampleCountFlagBits)desc->samples;
-    info.tiling = VK_IMAGE_TILING_OPTIMAL;
-    info.usage = hlvk_usage(desc);
-    result = hlvk_check(v, vkGetPhysicalDeviceImageFormatProperties(
-                               v->physical, info.format, info.imageType,
-                               info.tiling, info.usage, 0, &can),
-                        "a texture of this format and usage");
-    if (!result && (desc->width > can.maxExtent.width ||
-                    desc->height > can.maxExtent.height ||
-                    !(can.sampleCounts & desc->samples)))
-        result = hlvk_check(v, VK_ERROR_FORMAT_NOT_SUPPORTED,
-                            "a texture of this format, size and samples");
-    if (!result)
-        result = hlvk_check(v, vkCreateImage(v->vk, &info, NULL, &t->image),
-                            "vkCreateImage");
-    if (result)
-        return result;
     vkGetImageMemoryRequirements(v->vk, t->image, &need);
-    result = hlvk_memory_alloc(v, &need, HLVK_LOCAL, true, &t->memory);
-    if (!result)
-        result = hlvk_check(v, vkBindImageMemory(v->vk, t->image,
-                                                 t->memory.memory,
-                                                 t->memory.offset),
-                            "vkBindImageMemory");
-    return result;
+    r = hlvk_memory_alloc(v, &need, HLVK_LOCAL, true, &t->memory);
+    if (!r)
+        r = hlvk_check(v, vkBindImageMemory(v->vk, t->image,
+                                            t->memory.memory,
+                                            t->memory.offset),
+                       "vkBindImageMemory");
+    return r;
 }
 
 static enum hl_result view_make(struct hlvk *v, const struct hlvk_tex *t,
-                                uint32_t mips, VkImageView *out)
+                                enum hl_format format, uint32_t mips,
+                                VkImageUsageFlags use, VkImageView *out)
 {
-    VkImageViewCreateInfo info = { .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO };
-    info.image = t->image;
-    info.viewType = VK_IMAGE_VIEW_TYPE_2D;
-    info.format = hlvk_format(t->format);
-    /* Sampling takes one aspect; as an attachment the aspect is ignored. */
-    info.subresourceRange.aspectMask =
-        hlvk_aspects(t->format) & ~(VkFlags)VK_IMAGE_ASPECT_STENCIL_BIT;
-    info.subresourceRange.levelCount = mips;
-    info.subresourceRange.layerCount = 1;
+    /* Named, because the view's format may not allow all uses of the image. */
+    VkImageViewUsageCreateInfo usage = {
+        .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_USAGE_CREATE_INFO, .usage = use
+    };
+    VkImageViewCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
+        .pNext = &usage, .image = t->image,
+        .viewType = VK_IMAGE_VIEW_TYPE_2D, .format = hlvk_format(format),
+        /* Sampling takes one aspect; an attachment ignores it. */
+        .subresourceRange = {
+            hlvk_aspects(t->format) & ~(VkFlags)VK_IMAGE_ASPECT_STENCIL_BIT,
+            0, mips, 0, 1
+        }
+    };
     return hlvk_check(v, vkCreateImageView(v->vk, &info, NULL, out),
                       "vkCreateImageView");
 }
 
-static void tex_unmake(struct hlvk *v, struct hlvk_tex *t)
+static enum hl_result views_make(struct hlvk *v, struct hlvk_tex *t,
+                                 const struct hl_tex_desc *desc)
 {
-    if (t->target != t->view)
-        vkDestroyImageView(v->vk, t->target, NULL);
-    vkDestroyImageView(v->vk, t->view, NULL);
-    vkDestroyImage(v->vk, t->image, NULL);
-    hlvk_memory_free(v, &t->memory);
+    VkImageUsageFlags attachment = hlvk_usage(desc) &
+        (VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT |
+         VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT);
+    enum hl_result r = HL_OK;
+    if (desc->usage & HL_TEX_SAMPLED)
+        r = view_make(v, t, desc->sample_as, t->mips,
+                      VK_IMAGE_USAGE_SAMPLED_BIT, &t->view);
+    if (!r && attachment)
+        r = view_make(v, t, desc->format, 1, attachment, &t->target);
+    return r;
 }
 
 enum hl_result hlvk_tex_make(struct hlvk *v, const struct hl_tex_desc *desc,
                              struct hlvk_tex **out)
 {
     struct hlvk_tex *t = hl_bk_alloc(v->device, sizeof *t);
-    enum hl_result result;
     if (!t)
         return HL_ERR_MEMORY;
     t->format = desc->format;
@@ -186,15 +214,12 @@ enum hl_result hlvk_tex_make(struct hlvk *v, const struct hl_tex_desc *desc,
     t->height = desc->height;
     t->mips = desc->mips;
     t->serial = ++v->serials;
-    result = image_make(v, t, desc);
-    if (!result && desc->usage & (HL_TEX_SAMPLED | HL_TEX_TARGET))
-        result = view_make(v, t, t->mips, &t->view);
-    t->target = t->view;
-    if (!result && t->mips > 1 && desc->usage & HL_TEX_TARGET)
-        result = view_make(v, t, 1, &t->target);
-    if (result) {
+    enum hl_result r = image_make(v, t, desc);
+    if (!r)
+        r = views_make(v, t, desc);
+    if (r) {
         hlvk_tex_release(v, t);
-        return result;
+        return r;
     }
     hlvk_name(v, VK_OBJECT_TYPE_IMAGE, (uint64_t)t->image, desc->label);
     *out = t;
@@ -203,7 +228,10 @@ enum hl_result hlvk_tex_make(struct hlvk *v, const struct hl_tex_desc *desc,
 
 void hlvk_tex_release(struct hlvk *v, struct hlvk_tex *t)
 {
-    tex_unmake(v, t);
+    vkDestroyImageView(v->vk, t->target, NULL);
+    vkDestroyImageView(v->vk, t->view, NULL);
+    vkDestroyImage(v->vk, t->image, NULL);
+    hlvk_memory_free(v, &t->memory);
     hl_bk_free(v->device, t);
 }
 
@@ -214,19 +242,18 @@ enum hl_result hlvk_tex_create(void *state, uint32_t slot,
     return hlvk_tex_make(v, desc, &v->texs[slot]);
 }
 
-/* ---- upload ---------------------------------------------------------- */
+/* ---- upload ------------------------------------------------------------ */
 
 static VkBufferImageCopy whole_level(const struct hlvk_tex *t, uint32_t mip)
 {
-    VkBufferImageCopy copy = { 0 };
-    copy.imageSubresource.aspectMask =
-        hlvk_aspects(t->format) & ~(VkFlags)VK_IMAGE_ASPECT_STENCIL_BIT;
-    copy.imageSubresource.mipLevel = mip;
-    copy.imageSubresource.layerCount = 1;
-    copy.imageExtent.width = t->width >> mip ? t->width >> mip : 1;
-    copy.imageExtent.height = t->height >> mip ? t->height >> mip : 1;
-    copy.imageExtent.depth = 1;
-    return copy;
+    return (VkBufferImageCopy){
+        .imageSubresource = {
+            hlvk_aspects(t->format) & ~(VkFlags)VK_IMAGE_ASPECT_STENCIL_BIT,
+            mip, 0, 1
+        },
+        .imageExtent = { t->width >> mip ? t->width >> mip : 1,
+                         t->height >> mip ? t->height >> mip : 1, 1 }
+    };
 }
 
 enum hl_result hlvk_tex_upload(struct hlvk *v, struct hlvk_tex *t,
@@ -235,14 +262,14 @@ enum hl_result hlvk_tex_upload(struct hlvk *v, struct hlvk_tex *t,
     VkBufferImageCopy copy = whole_level(t, mip);
     VkBuffer from;
     struct hlvk_frame *f;
-    enum hl_result result = hlvk_stage(v, data, bytes, &f, &from,
-                                       &copy.bufferOffset);
-    if (result)
-        return result;
+    enum hl_result r = hlvk_stage(v, data, bytes, &f, &from,
+                                  &copy.bufferOffset);
+    if (r)
+        return r;
     hlvk_tex_use(v, f->cmd, t, HLVK_USE_COPY_TO, true);
     hlvk_barrier(v, f->cmd);
     vkCmdCopyBufferToImage(f->cmd, from, t->image,
-                           VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
+                           hlvk_layout(HLVK_USE_COPY_TO), 1, &copy);
     return HL_OK;
 }
 
@@ -253,22 +280,22 @@ enum hl_result hlvk_tex_write(void *state, uint32_t slot, uint32_t mip,
     return hlvk_tex_upload(v, v->texs[slot], mip, data, bytes);
 }
 
-/* ---- reading back ---------------------------------------------------- */
+/* ---- reading back ------------------------------------------------------ */
 
 static enum hl_result readback_reserve(struct hlvk *v, VkDeviceSize bytes)
 {
     struct hlvk_buf *b = &v->readback;
-    enum hl_result result;
     if (bytes <= b->bytes)
         return HL_OK;
     /* Its last use was waited for. */
     hlvk_buf_unmake(v, b->buffer, &b->memory);
     memset(b, 0, sizeof *b);
-    result = hlvk_buf_make(v, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                           HLVK_READBACK, &b->buffer, &b->memory);
-    if (!result)
+    enum hl_result r = hlvk_buf_make(v, bytes,
+                                     VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                                     HLVK_READBACK, &b->buffer, &b->memory);
+    if (!r)
         b->bytes = bytes;
-    return result;
+    return r;
 }
 
 static void record_read(struct hlvk *v, VkCommandBuffer cmd,
@@ -279,15 +306,15 @@ static void record_read(struct hlvk *v, VkCommandBuffer cmd,
         VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
         VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT
     };
-    VkDependencyInfo info = { .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO };
+    static const VkDependencyInfo info = {
+        .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
+        .memoryBarrierCount = 1, .pMemoryBarriers = &to_host
+    };
     VkBufferImageCopy copy = whole_level(t, 0);
     hlvk_tex_use(v, cmd, t, HLVK_USE_COPY_FROM, false);
     hlvk_barrier(v, cmd);
-    vkCmdCopyImageToBuffer(cmd, t->image,
-                           VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+    vkCmdCopyImageToBuffer(cmd, t->image, hlvk_layout(HLVK_USE_COPY_FROM),
                            v->readback.buffer, 1, &copy);
-    info.memoryBarrierCount = 1;
-    info.pMemoryBarriers = &to_host;
     vkCmdPipelineBarrier2(cmd, &info);
 }
 
@@ -295,21 +322,16 @@ static void record_read(struct hlvk *v, VkCommandBuffer cmd,
 static void depth_to_float(enum hl_format format, const unsigned char *from,
                            float *to, size_t n)
 {
-    uint16_t d16;
-    uint32_t d24;
-    size_t i;
-    if (format == HL_FORMAT_D16_UNORM) {
-        for (i = 0; i < n; i++) {
+    for (size_t i = 0; i < n; i++) {
+        uint16_t d16;
+        uint32_t d24;
+        if (format == HL_FORMAT_D16_UNORM) {
             memcpy(&d16, from + i * 2, 2);
             to[i] = (float)d16 / 65535.0f;
-        }
-    } else if (format == HL_FORMAT_D24_UNORM_S8) {
-        for (i = 0; i < n; i++) {
+        } else {
             memcpy(&d24, from + i * 4, 4);
             to[i] = (float)(d24 & 0xffffff) / 16777215.0f;
         }
-    } else {
-        memcpy(to, from, n * 4);
     }
 }
 
@@ -319,18 +341,18 @@ enum hl_result hlvk_tex_read(void *state, uint32_t slot, void *out,
     struct hlvk *v = state;
     struct hlvk_tex *t = v->texs[slot];
     struct hlvk_frame *f;
-    size_t texels = (size_t)t->width * t->height;
-    enum hl_result result = readback_reserve(v, bytes);
-    if (!result)
-        result = hlvk_begin(v, &f);
-    if (result)
-        return result;
+    enum hl_result r = readback_reserve(v, bytes);
+    if (!r)
+        r = hlvk_begin(v, &f);
+    if (r)
+        return r;
     record_read(v, f->cmd, t);
-    result = hlvk_flush(v, true);
-    if (result)
-        return result;
-    if (hl_format_info(t->format)->kind == HL_KIND_DEPTH)
-        depth_to_float(t->format, v->readback.memory.map, out, texels);
+    r = hlvk_flush(v, true);
+    if (r)
+        return r;
+    if (t->format == HL_FORMAT_D16_UNORM ||
+        t->format == HL_FORMAT_D24_UNORM_S8)
+        depth_to_float(t->format, v->readback.memory.map, out, bytes / 4);
     else
         memcpy(out, v->readback.memory.map, bytes);
     return HL_OK;

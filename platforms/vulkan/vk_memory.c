@@ -43,38 +43,44 @@ static VkDeviceSize block_bytes(const struct hlvk *v, uint32_t type,
     return bytes <= heap && bytes <= v->max_allocation ? bytes : 0;
 }
 
+static VkResult block_allocate(struct hlvk *v, struct hlvk_block *b)
+{
+    VkMemoryAllocateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+        .allocationSize = b->bytes, .memoryTypeIndex = b->type
+    };
+    void *map = NULL;
+    VkResult r = vkAllocateMemory(v->vk, &info, NULL, &b->memory);
+    if (r == VK_SUCCESS &&
+        (v->memory.memoryTypes[b->type].propertyFlags & HOST) == HOST) {
+        r = vkMapMemory(v->vk, b->memory, 0, VK_WHOLE_SIZE, 0, &map);
+        if (r != VK_SUCCESS)
+            vkFreeMemory(v->vk, b->memory, NULL);
+    }
+    b->map = map;
+    return r;
+}
+
 static struct hlvk_block *block_make(struct hlvk *v, uint32_t type,
                                      bool image, VkDeviceSize need)
 {
-    VkMemoryAllocateInfo info = { .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO };
+    VkDeviceSize bytes = block_bytes(v, type, need);
+    if (!bytes)
+        return NULL;
     struct hlvk_block *b = hl_bk_alloc(v->device, sizeof *b);
     struct hlvk_segment *s = hl_bk_alloc(v->device, sizeof *s);
-    VkResult result = VK_ERROR_OUT_OF_DEVICE_MEMORY;
-    void *map = NULL;
-    info.allocationSize = block_bytes(v, type, need);
-    info.memoryTypeIndex = type;
-    if (b && s && info.allocationSize)
-        result = vkAllocateMemory(v->vk, &info, NULL, &b->memory);
-    if (result == VK_SUCCESS &&
-        (v->memory.memoryTypes[type].propertyFlags & HOST) == HOST) {
-        result = vkMapMemory(v->vk, b->memory, 0, VK_WHOLE_SIZE, 0, &map);
-        if (result != VK_SUCCESS)
-            vkFreeMemory(v->vk, b->memory, NULL);
+    if (b && s) {
+        *b = (struct hlvk_block){
+            .next = v->blocks, .bytes = bytes, .type = type, .image = image,
+            .first = s
+        };
+        *s = (struct hlvk_segment){ .block = b, .bytes = bytes };
+        if (block_allocate(v, b) == VK_SUCCESS)
+            return v->blocks = b;
     }
-    if (result != VK_SUCCESS) {
-        hl_bk_free(v->device, b);
-        hl_bk_free(v->device, s);
-        return NULL;
-    }
-    b->map = map;
-    b->bytes = s->bytes = info.allocationSize;
-    b->type = type;
-    b->image = image;
-    b->first = s;
-    s->block = b;
-    b->next = v->blocks;
-    v->blocks = b;
-    return b;
+    hl_bk_free(v->device, b);
+    hl_bk_free(v->device, s);
+    return NULL;
 }
 
 /* ---- segments -------------------------------------------------------- */
@@ -83,17 +89,15 @@ static struct hlvk_block *block_make(struct hlvk *v, uint32_t type,
  * segment stays whole: nothing fails, some bytes lie idle. */
 static void split(struct hlvk *v, struct hlvk_segment *s, VkDeviceSize keep)
 {
-    struct hlvk_segment *rest;
     if (s->bytes - keep < 256)
         return;
-    rest = hl_bk_alloc(v->device, sizeof *rest);
+    struct hlvk_segment *rest = hl_bk_alloc(v->device, sizeof *rest);
     if (!rest)
         return;
-    rest->block = s->block;
-    rest->offset = s->offset + keep;
-    rest->bytes = s->bytes - keep;
-    rest->prev = s;
-    rest->next = s->next;
+    *rest = (struct hlvk_segment){
+        .prev = s, .next = s->next, .block = s->block,
+        .offset = s->offset + keep, .bytes = s->bytes - keep
+    };
     if (s->next)
         s->next->prev = rest;
     s->next = rest;
@@ -113,8 +117,7 @@ static void swallow_next(struct hlvk *v, struct hlvk_segment *s)
 static bool take(struct hlvk *v, struct hlvk_block *block,
                  const VkMemoryRequirements *need, struct hlvk_memory *out)
 {
-    struct hlvk_segment *s;
-    for (s = block->first; s; s = s->next) {
+    for (struct hlvk_segment *s = block->first; s; s = s->next) {
         VkDeviceSize at = align_up(s->offset, need->alignment);
         if (s->used || at + need->size > s->offset + s->bytes)
             continue;
@@ -138,10 +141,9 @@ static bool is_empty(const struct hlvk_block *b)
  * goes allocate each time; but none that was made for one large object. */
 static bool is_surplus(const struct hlvk *v, const struct hlvk_block *block)
 {
-    const struct hlvk_block *b;
     if (block->bytes > BLOCK_BYTES)
         return true;
-    for (b = v->blocks; b; b = b->next)
+    for (const struct hlvk_block *b = v->blocks; b; b = b->next)
         if (b != block && b->type == block->type &&
             b->image == block->image && is_empty(b))
             return true;
@@ -188,11 +190,10 @@ static bool take_type(struct hlvk *v, uint32_t type, bool image,
                       const VkMemoryRequirements *need,
                       struct hlvk_memory *out)
 {
-    struct hlvk_block *b;
-    for (b = v->blocks; b; b = b->next)
+    for (struct hlvk_block *b = v->blocks; b; b = b->next)
         if (b->type == type && b->image == image && take(v, b, need, out))
             return true;
-    b = block_make(v, type, image, need->size);
+    struct hlvk_block *b = block_make(v, type, image, need->size);
     return b && take(v, b, need, out);
 }
 
@@ -205,9 +206,8 @@ static bool take_any(struct hlvk *v, enum hlvk_where where, bool image,
         VK_MEMORY_PROPERTY_PROTECTED_BIT |
         VK_MEMORY_PROPERTY_LAZILY_ALLOCATED_BIT |
         VK_MEMORY_PROPERTY_DEVICE_COHERENT_BIT_AMD;
-    uint32_t i, wish;
-    for (wish = 0; wish < 2; wish++)
-        for (i = 0; i < v->memory.memoryTypeCount; i++) {
+    for (uint32_t wish = 0; wish < 2; wish++)
+        for (uint32_t i = 0; i < v->memory.memoryTypeCount; i++) {
             VkMemoryPropertyFlags has =
                 v->memory.memoryTypes[i].propertyFlags;
             VkMemoryPropertyFlags want = wishes[where][wish];
@@ -239,29 +239,28 @@ enum hl_result hlvk_buf_make(struct hlvk *v, VkDeviceSize bytes,
                              VkBufferUsageFlags usage, enum hlvk_where where,
                              VkBuffer *out, struct hlvk_memory *memory)
 {
-    VkBufferCreateInfo info = { .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO };
-    VkMemoryRequirements need;
-    enum hl_result result;
+    VkBufferCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
+        .size = bytes, .usage = usage
+    };
     *out = VK_NULL_HANDLE;
     if (bytes > v->max_buffer)
         return hlvk_check(v, VK_ERROR_OUT_OF_DEVICE_MEMORY,
                           "a buffer larger than the device's maxBufferSize");
-    info.size = bytes;
-    info.usage = usage;
-    result = hlvk_check(v, vkCreateBuffer(v->vk, &info, NULL, out),
-                        "vkCreateBuffer");
-    if (result)
-        return result;
+    enum hl_result r = hlvk_check(v, vkCreateBuffer(v->vk, &info, NULL, out),
+                                  "vkCreateBuffer");
+    if (r)
+        return r;
+    VkMemoryRequirements need;
     vkGetBufferMemoryRequirements(v->vk, *out, &need);
-    result = hlvk_memory_alloc(v, &need, where, false, memory);
-    if (!result)
-        result = hlvk_check(v, vkBindBufferMemory(v->vk, *out,
-                                                  memory->memory,
-                                                  memory->offset),
-                            "vkBindBufferMemory");
-    if (result)
+    r = hlvk_memory_alloc(v, &need, where, false, memory);
+    if (!r)
+        r = hlvk_check(v, vkBindBufferMemory(v->vk, *out, memory->memory,
+                                             memory->offset),
+                       "vkBindBufferMemory");
+    if (r)
         hlvk_buf_unmake(v, *out, memory);
-    return result;
+    return r;
 }
 
 void hlvk_buf_unmake(struct hlvk *v, VkBuffer buffer,
@@ -279,46 +278,43 @@ void hlvk_buf_release(struct hlvk *v, struct hlvk_buf *b)
 
 static VkBufferUsageFlags buf_usage(uint32_t usage)
 {
+    static const VkBufferUsageFlags bits[] = {
+        VK_BUFFER_USAGE_VERTEX_BUFFER_BIT, VK_BUFFER_USAGE_INDEX_BUFFER_BIT,
+        VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT
+    };
     VkBufferUsageFlags u = VK_BUFFER_USAGE_TRANSFER_DST_BIT;
-    if (usage & HL_BUF_VERTEX)
-        u |= VK_BUFFER_USAGE_VERTEX_BUFFER_BIT;
-    if (usage & HL_BUF_INDEX)
-        u |= VK_BUFFER_USAGE_INDEX_BUFFER_BIT;
-    if (usage & HL_BUF_UNIFORM)
-        u |= VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT;
-    if (usage & HL_BUF_STORAGE)
-        u |= VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+    for (int i = 0; i < 4; i++)
+        if (usage >> i & 1)
+            u |= bits[i];
     return u;
 }
-
-/* Everything that reads a buffer in a pass. */
-static const VkMemoryBarrier2 before_copy = {
-    VK_STRUCTURE_TYPE_MEMORY_BARRIER_2, NULL,
-    VK_PIPELINE_STAGE_2_VERTEX_INPUT_BIT |
-        VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT |
-        VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_2_COPY_BIT,
-    VK_ACCESS_2_TRANSFER_WRITE_BIT,
-    VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT
-};
 
 static enum hl_result upload(struct hlvk *v, struct hlvk_buf *b,
                              size_t offset, const void *data, size_t bytes)
 {
-    VkDependencyInfo dependency = { .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO };
-    VkBufferCopy copy;
+    /* Everything that reads a buffer in a pass, and earlier copies. */
+    static const VkMemoryBarrier2 reads = {
+        VK_STRUCTURE_TYPE_MEMORY_BARRIER_2, NULL,
+        VK_PIPELINE_STAGE_2_VERTEX_INPUT_BIT |
+            VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT |
+            VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT |
+            VK_PIPELINE_STAGE_2_COPY_BIT,
+        VK_ACCESS_2_TRANSFER_WRITE_BIT,
+        VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT
+    };
+    static const VkDependencyInfo before = {
+        .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
+        .memoryBarrierCount = 1, .pMemoryBarriers = &reads
+    };
+    VkBufferCopy copy = { .dstOffset = offset, .size = bytes };
     VkBuffer from;
     struct hlvk_frame *f;
-    enum hl_result result = hlvk_stage(v, data, bytes, &f, &from,
-                                       &copy.srcOffset);
-    if (result)
-        return result;
-    if (!b->fresh) {
-        dependency.memoryBarrierCount = 1;
-        dependency.pMemoryBarriers = &before_copy;
-        vkCmdPipelineBarrier2(f->cmd, &dependency);
-    }
-    copy.dstOffset = offset;
-    copy.size = bytes;
+    enum hl_result r = hlvk_stage(v, data, bytes, &f, &from,
+                                  &copy.srcOffset);
+    if (r)
+        return r;
+    if (!b->fresh)
+        vkCmdPipelineBarrier2(f->cmd, &before);
     vkCmdCopyBuffer(f->cmd, from, b->buffer, 1, &copy);
     v->copied = true;
     return HL_OK;
@@ -343,24 +339,23 @@ enum hl_result hlvk_buf_create(void *state, uint32_t slot,
     enum hlvk_where where = desc->dynamic || shared ? HLVK_UPLOAD
                                                     : HLVK_LOCAL;
     struct hlvk_buf *b = hl_bk_alloc(v->device, sizeof *b);
-    enum hl_result result;
     if (!b)
         return HL_ERR_MEMORY;
     b->bytes = desc->bytes;
     b->serial = ++v->serials;
-    result = hlvk_buf_make(v, desc->bytes, buf_usage(desc->usage), where,
-                           &b->buffer, &b->memory);
-    if (result) {
+    enum hl_result r = hlvk_buf_make(v, desc->bytes, buf_usage(desc->usage),
+                                     where, &b->buffer, &b->memory);
+    if (r) {
         hl_bk_free(v->device, b);
-        return result;
+        return r;
     }
     hlvk_name(v, VK_OBJECT_TYPE_BUFFER, (uint64_t)b->buffer, desc->label);
     v->bufs[slot] = b;
     b->fresh = true;
     if (desc->data)
-        result = hlvk_buf_write(v, slot, 0, desc->data, desc->bytes);
+        r = hlvk_buf_write(v, slot, 0, desc->data, desc->bytes);
     b->fresh = false;
-    if (result)
+    if (r)
         hlvk_destroy(v, 'b', slot);
-    return result;
+    return r;
 }

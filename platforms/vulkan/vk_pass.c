@@ -4,9 +4,13 @@
 #include <string.h>
 #include "platforms/vulkan/vk.h"
 
-/* ---- prepare: descriptor sets ---------------------------------------- */
+/* ---- descriptor sets --------------------------------------------------- */
 
-struct keys { uint64_t key[HLVK_SETS][HL_MAX_TEXTURES]; };
+const struct hl_bk_range *hlvk_ranges(const struct hl_bk_draw *draw,
+                                      uint32_t kind)
+{
+    return kind == HLVK_SET_STORAGE ? draw->storage : draw->uniform;
+}
 
 static uint64_t range_key(const struct hlvk *v, const struct hl_bk_range *r)
 {
@@ -15,65 +19,65 @@ static uint64_t range_key(const struct hlvk *v, const struct hl_bk_range *r)
     return (uint64_t)v->bufs[r->slot]->serial << 32 | r->bytes;
 }
 
-static void make_keys(const struct hlvk *v, const struct hl_bk_draw *d,
-                      struct keys *out)
+static uint64_t texture_key(const struct hlvk *v, const struct hl_bk_draw *d,
+                            uint32_t i)
 {
-    uint32_t i;
-    memset(out, 0, sizeof *out);
-    for (i = 0; i < HL_MAX_UNIFORMS; i++)
-        out->key[0][i] = range_key(v, &d->uniform[i]);
-    for (i = 0; i < d->n_textures; i++) {
-        const struct hl_bk_texture *t = &d->texture[i];
-        if (t->slot != HL_NO_SLOT)
-            out->key[1][i] = (uint64_t)v->texs[t->slot]->serial << 32 |
-                             (uint32_t)(t->filter << 16 | t->wrap_u << 8 |
-                                        t->wrap_v);
-    }
-    for (i = 0; i < HL_MAX_STORAGE; i++)
-        out->key[2][i] = range_key(v, &d->storage[i]);
+    const struct hl_bk_texture *t = &d->texture[i];
+    if (i >= d->n_textures || t->slot == HL_NO_SLOT)
+        return 0;
+    return (uint64_t)v->texs[t->slot]->serial << 32 |
+           (uint32_t)(t->filter << 16 | t->wrap_u << 8 | t->wrap_v);
+}
+
+/* What the program reads of one set; 0 where nothing is bound or read. */
+static void make_key(const struct hlvk *v, const struct hl_bk_draw *d,
+                     uint32_t kind, uint32_t reads, uint64_t *key)
+{
+    for (uint32_t i = 0; i < hlvk_set_kinds[kind].n; i++)
+        key[i] = !(reads >> i & 1) ? 0
+               : kind == HLVK_SET_TEXTURES ? texture_key(v, d, i)
+               : range_key(v, &hlvk_ranges(d, kind)[i]);
 }
 
 /* Neighbouring draws mostly bind the same: compare before asking. */
 static enum hl_result find_sets(struct hlvk *v, const struct hl_bk_draw *draws,
-                                uint32_t n)
+                                uint32_t n, bool *storage)
 {
-    struct keys now, before;
-    uint32_t i, kind;
-    enum hl_result result;
+    uint64_t keys[HLVK_SETS][HL_MAX_TEXTURES], key[HL_MAX_TEXTURES];
+    VkDescriptorSet sets[HLVK_SETS] = { VK_NULL_HANDLE };
     if (!hlvk_grow(v, &v->scratch, &v->max_scratch, n, sizeof *v->scratch))
         return HL_ERR_MEMORY;
-    for (i = 0; i < n; i++) {
-        make_keys(v, &draws[i], &now);
-        for (kind = 0; kind < HLVK_SETS; kind++) {
-            if (i > 0 && !memcmp(now.key[kind], before.key[kind],
-                                 sizeof now.key[kind])) {
-                v->scratch[i][kind] = v->scratch[i - 1][kind];
+    for (uint32_t i = 0; i < n; i++)
+        for (uint32_t kind = 0; kind < HLVK_SETS; kind++) {
+            uint32_t reads = v->progs[draws[i].prog]->reads[kind];
+            size_t bytes = hlvk_set_kinds[kind].n * sizeof *key;
+            if (!reads)
                 continue;
+            make_key(v, &draws[i], kind, reads, key);
+            if (!sets[kind] || memcmp(key, keys[kind], bytes)) {
+                enum hl_result r = hlvk_set_find(v, kind, key, &draws[i],
+                                                 &sets[kind]);
+                if (r)
+                    return r;
+                memcpy(keys[kind], key, bytes);
             }
-            result = hlvk_set_find(v, kind, now.key[kind], &draws[i],
-                                   &v->scratch[i][kind]);
-            if (result)
-                return result;
+            v->scratch[i][kind] = sets[kind];
         }
-        before = now;
-    }
+    *storage = sets[HLVK_SET_STORAGE] != VK_NULL_HANDLE;
     return HL_OK;
 }
 
-/* ---- barriers -------------------------------------------------------- */
+/* ---- barriers ---------------------------------------------------------- */
 
 static enum hlvk_use depth_use(const struct hl_bk_pass *p)
 {
     return p->depth_read_only ? HLVK_USE_DEPTH_READ : HLVK_USE_DEPTH;
 }
 
-static void barriers(struct hlvk *v, VkCommandBuffer cmd,
-                     const struct hl_bk_pass *p,
-                     const struct hl_bk_draw *draws, uint32_t n)
+static void use_targets(struct hlvk *v, VkCommandBuffer cmd,
+                        const struct hl_bk_pass *p)
 {
-    uint32_t i, k;
-    v->pass++;
-    for (i = 0; i < p->n_colors; i++) {
+    for (uint32_t i = 0; i < p->n_colors; i++) {
         const struct hl_bk_target *t = &p->color[i];
         hlvk_tex_use(v, cmd, v->texs[t->slot], HLVK_USE_COLOR,
                      t->load != HL_LOAD_KEEP);
@@ -83,21 +87,36 @@ static void barriers(struct hlvk *v, VkCommandBuffer cmd,
     if (p->depth.slot != HL_NO_SLOT)
         hlvk_tex_use(v, cmd, v->texs[p->depth.slot], depth_use(p),
                      p->depth.load != HL_LOAD_KEEP);
-    for (i = 0; i < n; i++)
-        for (k = 0; k < draws[i].n_textures; k++) {
-            uint32_t slot = draws[i].texture[k].slot;
-            struct hlvk_tex *t = slot == HL_NO_SLOT ? v->white
-                                                    : v->texs[slot];
-            if (t->pass == v->pass)
-                continue;
-            t->pass = v->pass;
-            hlvk_tex_use(v, cmd, t, hlvk_sampled(t), false);
-        }
+}
+
+static void use_textures(struct hlvk *v, VkCommandBuffer cmd,
+                         const struct hl_bk_draw *d)
+{
+    uint32_t reads = v->progs[d->prog]->reads[HLVK_SET_TEXTURES];
+    for (uint32_t i = 0; i < d->n_textures; i++) {
+        if (!(reads >> i & 1) || d->texture[i].slot == HL_NO_SLOT)
+            continue;
+        struct hlvk_tex *t = v->texs[d->texture[i].slot];
+        if (t->pass == v->pass)
+            continue;
+        t->pass = v->pass;
+        hlvk_tex_use(v, cmd, t, hlvk_sampled(t), false);
+    }
+}
+
+static void barriers(struct hlvk *v, VkCommandBuffer cmd,
+                     const struct hl_bk_pass *p,
+                     const struct hl_bk_draw *draws, uint32_t n)
+{
+    v->pass++;
+    use_targets(v, cmd, p);
+    for (uint32_t i = 0; i < n; i++)
+        use_textures(v, cmd, &draws[i]);
     hlvk_tex_use(v, cmd, v->white, HLVK_USE_SAMPLED, false);
     hlvk_barrier(v, cmd);
 }
 
-/* ---- rendering ------------------------------------------------------- */
+/* ---- rendering --------------------------------------------------------- */
 
 static VkAttachmentLoadOp load_op(enum hl_load load)
 {
@@ -112,127 +131,110 @@ static VkAttachmentStoreOp store_op(bool discard)
                    : VK_ATTACHMENT_STORE_OP_STORE;
 }
 
-static VkClearColorValue clear_color(enum hl_format format,
-                                     const float clear[4])
+static VkClearColorValue clear_color(bool integer, const float clear[4])
 {
     VkClearColorValue c;
-    int i;
     memcpy(c.float32, clear, sizeof c.float32);
-    if (hl_format_info(format)->kind == HL_KIND_UINT)
-        for (i = 0; i < 4; i++)
-            c.uint32[i] = clear[i] <= 0.0f ? 0
-                        : clear[i] >= 4294967040.0f ? UINT32_MAX
-                                                    : (uint32_t)clear[i];
+    /* 4294967040 is the largest float below 2^32. */
+    for (int i = 0; integer && i < 4; i++)
+        c.uint32[i] = !(clear[i] > 0.0f) ? 0
+                    : clear[i] > 4294967040.0f ? UINT32_MAX
+                                               : (uint32_t)clear[i];
     return c;
 }
 
-static void color_attachment(const struct hlvk *v,
-                             const struct hl_bk_target *t,
-                             VkRenderingAttachmentInfo *a)
+static VkRenderingAttachmentInfo color_attachment(
+    const struct hlvk *v, const struct hl_bk_target *t)
 {
     const struct hlvk_tex *x = v->texs[t->slot];
-    a->sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
-    a->imageView = x->target;
-    a->imageLayout = hlvk_layout(HLVK_USE_COLOR);
-    a->loadOp = load_op(t->load);
-    a->storeOp = store_op(t->discard);
-    a->clearValue.color = clear_color(x->format, t->clear);
-    if (t->resolve == HL_NO_SLOT)
-        return;
-    /* Integers cannot be averaged: theirs is the first sample. */
-    a->resolveMode = hl_format_info(x->format)->kind == HL_KIND_UINT
-                     ? VK_RESOLVE_MODE_SAMPLE_ZERO_BIT
-                     : VK_RESOLVE_MODE_AVERAGE_BIT;
-    a->resolveImageView = v->texs[t->resolve]->target;
-    a->resolveImageLayout = hlvk_layout(HLVK_USE_COLOR);
+    bool integer = hl_format_info(x->format)->kind == HL_KIND_UINT;
+    VkRenderingAttachmentInfo a = {
+        .sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
+        .imageView = x->target,
+        .imageLayout = hlvk_layout(HLVK_USE_COLOR),
+        .loadOp = load_op(t->load), .storeOp = store_op(t->discard),
+        .clearValue = { .color = clear_color(integer, t->clear) }
+    };
+    if (t->resolve != HL_NO_SLOT) {
+        /* Integers cannot be averaged: theirs is the first sample. */
+        a.resolveMode = integer ? VK_RESOLVE_MODE_SAMPLE_ZERO_BIT
+                                : VK_RESOLVE_MODE_AVERAGE_BIT;
+        a.resolveImageView = v->texs[t->resolve]->target;
+        a.resolveImageLayout = hlvk_layout(HLVK_USE_COLOR);
+    }
+    return a;
 }
 
-static void depth_attachment(const struct hlvk *v, const struct hl_bk_pass *p,
-                             VkRenderingAttachmentInfo *a)
+static VkRenderingAttachmentInfo depth_attachment(const struct hlvk *v,
+                                                  const struct hl_bk_pass *p)
 {
-    a->sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
-    a->imageView = v->texs[p->depth.slot]->target;
-    a->imageLayout = hlvk_layout(depth_use(p));
-    a->loadOp = load_op(p->depth.load);
-    /* Any other store counts as a write, which would race with shaders that
-     * sample this very image. */
-    a->storeOp = p->depth_read_only ? VK_ATTACHMENT_STORE_OP_NONE
-                                    : store_op(p->depth.discard);
-    a->clearValue.depthStencil.depth = p->depth.clear[0];
+    return (VkRenderingAttachmentInfo){
+        .sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
+        .imageView = v->texs[p->depth.slot]->target,
+        .imageLayout = hlvk_layout(depth_use(p)),
+        .loadOp = load_op(p->depth.load),
+        /* Any other store counts as a write, which would race with shaders
+         * that sample this very image. */
+        .storeOp = p->depth_read_only ? VK_ATTACHMENT_STORE_OP_NONE
+                                      : store_op(p->depth.discard),
+        .clearValue = { .depthStencil = { p->depth.clear[0], 0 } }
+    };
 }
 
-static void rendering_begin(const struct hlvk *v, VkCommandBuffer cmd,
+static void begin_rendering(const struct hlvk *v, VkCommandBuffer cmd,
                             const struct hl_bk_pass *p)
 {
     VkRenderingAttachmentInfo colors[HL_MAX_COLORS], depth;
-    VkRenderingInfo info = { .sType = VK_STRUCTURE_TYPE_RENDERING_INFO };
-    VkViewport viewport = { 0 };
-    uint32_t i;
-    memset(colors, 0, sizeof colors);
-    memset(&depth, 0, sizeof depth);
-    for (i = 0; i < p->n_colors; i++)
-        color_attachment(v, &p->color[i], &colors[i]);
-    info.renderArea.extent.width = p->width;
-    info.renderArea.extent.height = p->height;
-    info.layerCount = 1;
-    info.colorAttachmentCount = p->n_colors;
-    info.pColorAttachments = colors;
+    VkRenderingInfo info = {
+        .sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
+        .renderArea = { { 0, 0 }, { p->width, p->height } },
+        .layerCount = 1,
+        .colorAttachmentCount = p->n_colors, .pColorAttachments = colors
+    };
+    VkViewport viewport = {
+        0.0f, 0.0f, (float)p->width, (float)p->height, 0.0f, 1.0f
+    };
+    for (uint32_t i = 0; i < p->n_colors; i++)
+        colors[i] = color_attachment(v, &p->color[i]);
     if (p->depth.slot != HL_NO_SLOT) {
-        depth_attachment(v, p, &depth);
+        depth = depth_attachment(v, p);
         info.pDepthAttachment = &depth;
     }
     vkCmdBeginRendering(cmd, &info);
-    viewport.width = (float)p->width;
-    viewport.height = (float)p->height;
-    viewport.maxDepth = 1.0f;
     vkCmdSetViewport(cmd, 0, 1, &viewport);
 }
 
-/* ---- draws ----------------------------------------------------------- */
+/* ---- draws ------------------------------------------------------------- */
 
-/* What is bound; nothing is bound twice. */
+/* What is bound in a pass; nothing is bound twice. */
 struct bound {
     VkPipeline pipeline;
     VkDescriptorSet sets[HLVK_SETS];
-    uint32_t offsets[HL_MAX_UNIFORMS + HL_MAX_STORAGE];
+    uint32_t offsets[HLVK_SETS][HL_MAX_UNIFORMS];
     VkBuffer streams[HL_MAX_STREAMS + 1];
     VkBuffer index;
     bool index16;
     struct hl_rect scissor;
 };
 
-static uint32_t offset_of(const struct hl_bk_range *r)
+static void bind_set(const struct hlvk *v, VkCommandBuffer cmd,
+                     struct bound *b, const struct hl_bk_draw *d,
+                     uint32_t kind, VkDescriptorSet set)
 {
-    return r->slot == HL_NO_SLOT ? 0 : r->offset;
-}
-
-static void bind_sets(const struct hlvk *v, VkCommandBuffer cmd,
-                      struct bound *b, const struct hl_bk_draw *d,
-                      const VkDescriptorSet *sets)
-{
-    uint32_t offsets[HL_MAX_UNIFORMS + HL_MAX_STORAGE];
-    const uint32_t *storage = offsets + HL_MAX_UNIFORMS;
-    uint32_t i;
-    for (i = 0; i < HL_MAX_UNIFORMS; i++)
-        offsets[i] = offset_of(&d->uniform[i]);
-    for (i = 0; i < HL_MAX_STORAGE; i++)
-        offsets[HL_MAX_UNIFORMS + i] = offset_of(&d->storage[i]);
-    if (sets[0] != b->sets[0] ||
-        memcmp(offsets, b->offsets, HL_MAX_UNIFORMS * sizeof *offsets))
-        vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS,
-                                v->layout, 0, 1, sets, HL_MAX_UNIFORMS,
-                                offsets);
-    if (sets[1] != b->sets[1])
-        vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS,
-                                v->layout, 1, 1, sets + 1, 0, NULL);
-    if (sets[2] != b->sets[2] ||
-        memcmp(storage, b->offsets + HL_MAX_UNIFORMS,
-               HL_MAX_STORAGE * sizeof *offsets))
-        vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS,
-                                v->layout, 2, 1, sets + 2, HL_MAX_STORAGE,
-                                storage);
-    memcpy(b->sets, sets, sizeof b->sets);
-    memcpy(b->offsets, offsets, sizeof b->offsets);
+    uint32_t offsets[HL_MAX_UNIFORMS];
+    uint32_t n = hlvk_set_kinds[kind].n_dynamic;
+    uint32_t reads = v->progs[d->prog]->reads[kind];
+    const struct hl_bk_range *r = hlvk_ranges(d, kind);
+    for (uint32_t i = 0; i < n; i++)
+        offsets[i] = reads >> i & 1 && r[i].slot != HL_NO_SLOT ? r[i].offset
+                                                               : 0;
+    if (set == b->sets[kind] &&
+        !memcmp(offsets, b->offsets[kind], n * sizeof *offsets))
+        return;
+    vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, v->layout,
+                            kind, 1, &set, n, offsets);
+    b->sets[kind] = set;
+    memcpy(b->offsets[kind], offsets, n * sizeof *offsets);
 }
 
 static void bind_streams(const struct hlvk *v, VkCommandBuffer cmd,
@@ -240,8 +242,7 @@ static void bind_streams(const struct hlvk *v, VkCommandBuffer cmd,
                          uint32_t streams)
 {
     static const VkDeviceSize zero = 0;
-    uint32_t i;
-    for (i = 0; streams >> i; i++) {
+    for (uint32_t i = 0; streams >> i; i++) {
         VkBuffer buffer = v->dummy->buffer;
         if (!(streams >> i & 1))
             continue;
@@ -269,13 +270,11 @@ static void bind_index(const struct hlvk *v, VkCommandBuffer cmd,
 static void bind_scissor(VkCommandBuffer cmd, struct bound *b,
                          const struct hl_rect *r)
 {
-    VkRect2D rect;
+    VkRect2D rect = {
+        { r->x, r->y }, { (uint32_t)r->width, (uint32_t)r->height }
+    };
     if (!memcmp(r, &b->scissor, sizeof *r))
         return;
-    rect.offset.x = r->x;
-    rect.offset.y = r->y;
-    rect.extent.width = (uint32_t)r->width;
-    rect.extent.height = (uint32_t)r->height;
     vkCmdSetScissor(cmd, 0, 1, &rect);
     b->scissor = *r;
 }
@@ -289,7 +288,9 @@ static void record_draw(const struct hlvk *v, VkCommandBuffer cmd,
         vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, p->pipeline);
         b->pipeline = p->pipeline;
     }
-    bind_sets(v, cmd, b, d, sets);
+    for (uint32_t kind = 0; kind < HLVK_SETS; kind++)
+        if (p->reads[kind])
+            bind_set(v, cmd, b, d, kind, sets[kind]);
     bind_streams(v, cmd, b, d, p->streams);
     bind_scissor(cmd, b, &d->scissor);
     if (d->index == HL_NO_SLOT) {
@@ -307,19 +308,19 @@ enum hl_result hlvk_pass_run(void *state, const struct hl_bk_pass *pass,
     struct hlvk *v = state;
     struct hlvk_frame *f;
     struct bound bound;
-    uint32_t i;
-    enum hl_result result = hlvk_begin(v, &f);
-    if (!result)
-        result = find_sets(v, draws, n);
-    if (!result)
-        result = hlvk_pass_reserve(v, f);
-    if (result)
-        return result;
+    bool storage;
+    enum hl_result r = hlvk_begin(v, &f);
+    if (!r)
+        r = find_sets(v, draws, n, &storage);
+    if (!r)
+        r = hlvk_pass_reserve(v, f, storage);
+    if (r)
+        return r;
     memset(&bound, 0, sizeof bound);
     barriers(v, f->cmd, pass, draws, n);
     hlvk_pass_begin(v, f, pass->label);
-    rendering_begin(v, f->cmd, pass);
-    for (i = 0; i < n; i++)
+    begin_rendering(v, f->cmd, pass);
+    for (uint32_t i = 0; i < n; i++)
         record_draw(v, f->cmd, &bound, &draws[i], v->scratch[i]);
     vkCmdEndRendering(f->cmd);
     hlvk_pass_end(v, f);

@@ -1,77 +1,102 @@
 /* SPDX-License-Identifier: Zlib */
-/* Programs: one pipeline each, viewport and scissor dynamic. */
+/* Programs: one pipeline each, viewport and scissor dynamic; and what their
+ * stages read, found in the SPIR-V. */
 #include <string.h>
 #include "platforms/vulkan/hl_spirv.h"
 #include "platforms/vulkan/vk.h"
 
-/* ---- which attributes a vertex stage reads --------------------------- */
+/* ---- what a stage reads ------------------------------------------------ */
 
-enum { ALL_ATTRS = (1 << HL_MAX_ATTRS) - 1, MAX_INPUTS = 64 };
+enum { MAX_VARIABLES = 64 };
 
-/* Opcodes and operands of the SPIR-V specification, section 3. */
-enum {
-    OP_TYPE_FLOAT = 22, OP_TYPE_VECTOR = 23, OP_TYPE_POINTER = 32,
-    OP_VARIABLE = 59, OP_DECORATE = 71, DECORATION_LOCATION = 30,
-    STORAGE_INPUT = 1
+/* Opcodes and decorations: SPIR-V specification, section 3. */
+enum { OP_FUNCTION = 54, OP_DECORATE = 71, BINDING = 33, DESCRIPTOR_SET = 34 };
+
+struct variable {
+    uint32_t id, binding;
+    uint32_t set;            /* word index of the decoration; 0 none         */
+    bool used;
 };
 
-struct location { uint32_t id, location; };
+struct stage {
+    uint32_t *words;         /* a copy: bindings are moved in it             */
+    uint32_t n_words;
+    struct variable vars[MAX_VARIABLES];
+    uint32_t n_vars;
+};
 
-/* The next instruction after `at`, or NULL at the end; *length its words. */
-static const uint32_t *instruction(const struct hl_spirv *s,
-                                   const uint32_t *at, uint32_t *length)
+/* Word index of the instruction after the one at `at`; 0 at the end. */
+static uint32_t next(const struct stage *s, uint32_t at)
 {
-    const uint32_t *end = s->words + s->bytes / 4;
-    at = at ? at + *length : s->words + 5;
-    if (at >= end)
+    uint32_t length = at ? s->words[at] >> 16 : 5;
+    uint32_t to = at + length;
+    return length && to < s->n_words &&
+           s->words[to] >> 16 <= s->n_words - to ? to : 0;
+}
+
+static struct variable *variable(struct stage *s, uint32_t id)
+{
+    for (uint32_t i = 0; i < s->n_vars; i++)
+        if (s->vars[i].id == id)
+            return &s->vars[i];
+    if (s->n_vars == MAX_VARIABLES)
         return NULL;
-    *length = *at >> 16;
-    return *length && *length <= (size_t)(end - at) ? at : NULL;
+    struct variable *v = &s->vars[s->n_vars++];
+    *v = (struct variable){ .id = id, .binding = UINT32_MAX };
+    return v;
 }
 
-/* Variables of one location: pointers to a float or a vector of them. Others
- * (matrices, arrays) reach over several, which need not be told apart. */
-static bool is_plain(const struct hl_spirv *s, uint32_t pointer)
+/* Decorations come before functions, where any word that equals a variable's
+ * id counts as a use: some are literals, and to read too much is harmless.
+ * False: more variables than any stage has. */
+static bool scan(struct stage *s)
 {
-    const uint32_t *at = NULL;
-    uint32_t n = 0, type = 0;
-    while ((at = instruction(s, at, &n)) != NULL)
-        if ((*at & 0xffff) == OP_TYPE_POINTER && n > 3 && at[1] == pointer)
-            type = at[3];
-    for (at = NULL, n = 0; (at = instruction(s, at, &n)) != NULL;)
-        if (n > 1 && at[1] == type && ((*at & 0xffff) == OP_TYPE_FLOAT ||
-                                       (*at & 0xffff) == OP_TYPE_VECTOR))
-            return true;
-    return false;
-}
-
-/* Mask of the input locations that a stage declares. Fetching an attribute
- * that it does not read costs time on lavapipe. */
-static uint32_t inputs(const struct hl_spirv *s)
-{
-    struct location found[MAX_INPUTS];
-    const uint32_t *at = NULL;
-    uint32_t i, n = 0, n_found = 0, mask = 0;
-    while ((at = instruction(s, at, &n)) != NULL) {
-        uint32_t op = *at & 0xffff;
-        if (op == OP_DECORATE && n > 3 && at[2] == DECORATION_LOCATION) {
-            if (n_found == MAX_INPUTS)
-                return ALL_ATTRS;
-            found[n_found].id = at[1];
-            found[n_found++].location = at[3];
-        }
-        /* Decorations come before variables. */
-        if (op != OP_VARIABLE || n < 4 || at[3] != STORAGE_INPUT)
+    bool body = false;
+    for (uint32_t at = 0; (at = next(s, at)) != 0;) {
+        const uint32_t *w = s->words + at;
+        uint32_t op = *w & 0xffff, n = *w >> 16;
+        body |= op == OP_FUNCTION;
+        for (uint32_t i = 1; body && i < n; i++)
+            for (uint32_t k = 0; k < s->n_vars; k++)
+                s->vars[k].used |= s->vars[k].id == w[i];
+        if (op != OP_DECORATE || n < 4 ||
+            (w[2] != BINDING && w[2] != DESCRIPTOR_SET))
             continue;
-        for (i = 0; i < n_found; i++)
-            if (found[i].id == at[2] && found[i].location < HL_MAX_ATTRS)
-                mask |= (is_plain(s, at[1]) ? 1u : (uint32_t)ALL_ATTRS)
-                        << found[i].location;
+        struct variable *v = variable(s, w[1]);
+        if (!v)
+            return false;
+        if (w[2] == BINDING)
+            v->binding = w[3];
+        else
+            v->set = at + 3;
     }
-    return mask & ALL_ATTRS;
+    return true;
 }
 
-/* ---- vertex input ---------------------------------------------------- */
+/* Mask of the bindings of a set that the stage reads. */
+static uint32_t bindings(const struct stage *s, uint32_t set)
+{
+    uint32_t mask = 0;
+    for (uint32_t i = 0; i < s->n_vars; i++) {
+        const struct variable *v = &s->vars[i];
+        if (v->used && v->set && s->words[v->set] == set && v->binding < 32)
+            mask |= 1u << v->binding;
+    }
+    return mask;
+}
+
+/* Uniforms that only the vertex stage reads move to their own set. */
+static void move_uniforms(struct stage *s, uint32_t keep)
+{
+    for (uint32_t i = 0; i < s->n_vars; i++) {
+        struct variable *v = &s->vars[i];
+        if (v->set && s->words[v->set] == HLVK_SET_UNIFORMS &&
+            v->binding < 32 && !(keep >> v->binding & 1))
+            s->words[v->set] = HLVK_SET_VERTEX_UNIFORMS;
+    }
+}
+
+/* ---- vertex input ------------------------------------------------------ */
 
 struct vertex_input {
     VkVertexInputBindingDescription bindings[HL_MAX_STREAMS + 1];
@@ -79,68 +104,54 @@ struct vertex_input {
     VkPipelineVertexInputStateCreateInfo info;
 };
 
-static VkFormat attr_format(enum hl_attr_format format)
-{
-    switch (format) {
-    case HL_ATTR_F32X1: return VK_FORMAT_R32_SFLOAT;
-    case HL_ATTR_F32X2: return VK_FORMAT_R32G32_SFLOAT;
-    case HL_ATTR_F32X3: return VK_FORMAT_R32G32B32_SFLOAT;
-    case HL_ATTR_U8X4_UNORM: return VK_FORMAT_R8G8B8A8_UNORM;
-    case HL_ATTR_S8X4_SNORM: return VK_FORMAT_R8G8B8A8_SNORM;
-    case HL_ATTR_S16X4_SNORM: return VK_FORMAT_R16G16B16A16_SNORM;
-    case HL_ATTR_U16X2_UNORM: return VK_FORMAT_R16G16_UNORM;
-    case HL_ATTR_F16X2: return VK_FORMAT_R16G16_SFLOAT;
-    case HL_ATTR_F16X4: return VK_FORMAT_R16G16B16A16_SFLOAT;
-    default: return VK_FORMAT_R32G32B32A32_SFLOAT;
-    }
-}
+static const VkFormat attr_formats[] = {
+    [HL_ATTR_NONE] = VK_FORMAT_R32G32B32A32_SFLOAT,
+    [HL_ATTR_F32X1] = VK_FORMAT_R32_SFLOAT,
+    [HL_ATTR_F32X2] = VK_FORMAT_R32G32_SFLOAT,
+    [HL_ATTR_F32X3] = VK_FORMAT_R32G32B32_SFLOAT,
+    [HL_ATTR_F32X4] = VK_FORMAT_R32G32B32A32_SFLOAT,
+    [HL_ATTR_U8X4_UNORM] = VK_FORMAT_R8G8B8A8_UNORM,
+    [HL_ATTR_S8X4_SNORM] = VK_FORMAT_R8G8B8A8_SNORM,
+    [HL_ATTR_S16X4_SNORM] = VK_FORMAT_R16G16B16A16_SNORM,
+    [HL_ATTR_U16X2_UNORM] = VK_FORMAT_R16G16_UNORM,
+    [HL_ATTR_F16X2] = VK_FORMAT_R16G16_SFLOAT,
+    [HL_ATTR_F16X4] = VK_FORMAT_R16G16B16A16_SFLOAT
+};
 
-/* Returns the mask of bindings. An absent attribute comes from a buffer that
- * does not advance. */
+/* Returns the mask of streams. All attributes are declared, which costs no
+ * time on lavapipe where a stage does not read them; absent ones come from a
+ * buffer that does not advance. */
 static uint32_t vertex_input(const struct hl_vertex_layout *layout,
-                             uint32_t read, struct vertex_input *out)
+                             struct vertex_input *out)
 {
-    uint32_t i, streams = 0, n = 0, n_bindings = 0;
-    for (i = 0; i < HL_MAX_ATTRS; i++) {
+    uint32_t streams = 0, n_bindings = 0;
+    for (uint32_t i = 0; i < HL_MAX_ATTRS; i++) {
         const struct hl_attr *a = &layout->attr[i];
-        VkVertexInputAttributeDescription *d = &out->attrs[n];
-        if (!(read >> i & 1))
-            continue;
-        n++;
-        d->location = i;
-        d->binding = a->format ? a->stream : HLVK_DUMMY_STREAM;
-        d->format = attr_format(a->format);
-        d->offset = a->format ? a->offset : 0;
-        streams |= 1u << d->binding;
+        uint32_t stream = a->format ? a->stream : HLVK_DUMMY_STREAM;
+        out->attrs[i] = (VkVertexInputAttributeDescription){
+            i, stream, attr_formats[a->format], a->format ? a->offset : 0
+        };
+        streams |= 1u << stream;
     }
-    for (i = 0; i <= HL_MAX_STREAMS; i++) {
-        VkVertexInputBindingDescription *b = &out->bindings[n_bindings];
+    for (uint32_t i = 0; streams >> i; i++) {
         if (!(streams >> i & 1))
             continue;
-        n_bindings++;
-        b->binding = i;
-        b->stride = i < HL_MAX_STREAMS ? layout->stride[i] : 0;
-        b->inputRate = VK_VERTEX_INPUT_RATE_VERTEX;
+        out->bindings[n_bindings++] = (VkVertexInputBindingDescription){
+            i, i == HLVK_DUMMY_STREAM ? 0 : layout->stride[i],
+            VK_VERTEX_INPUT_RATE_VERTEX
+        };
     }
-    out->info.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO;
-    out->info.vertexBindingDescriptionCount = n_bindings;
-    out->info.pVertexBindingDescriptions = out->bindings;
-    out->info.vertexAttributeDescriptionCount = n;
-    out->info.pVertexAttributeDescriptions = out->attrs;
+    out->info = (VkPipelineVertexInputStateCreateInfo){
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO,
+        .vertexBindingDescriptionCount = n_bindings,
+        .pVertexBindingDescriptions = out->bindings,
+        .vertexAttributeDescriptionCount = HL_MAX_ATTRS,
+        .pVertexAttributeDescriptions = out->attrs
+    };
     return streams;
 }
 
-/* ---- blending, depth, raster ------------------------------------------ */
-
-struct output {
-    VkPipelineColorBlendAttachmentState blends[HL_MAX_COLORS];
-    VkPipelineColorBlendStateCreateInfo blend;
-    VkPipelineDepthStencilStateCreateInfo depth;
-    VkPipelineRasterizationStateCreateInfo raster;
-    VkPipelineMultisampleStateCreateInfo multisample;
-    VkFormat colors[HL_MAX_COLORS];
-    VkPipelineRenderingCreateInfo rendering;
-};
+/* ---- blending, depth, raster ------------------------------------------- */
 
 /* Factors: source and destination of colour, then of alpha. */
 static const struct {
@@ -163,26 +174,23 @@ static const struct {
         { VK_BLEND_FACTOR_ONE, VK_BLEND_FACTOR_ONE }, VK_BLEND_OP_MAX }
 };
 
-static void blend_state(const struct hl_prog_desc *desc, struct output *o)
+static VkPipelineColorBlendAttachmentState blend_state(
+    const struct hl_prog_desc *desc)
 {
-    uint32_t i;
-    for (i = 0; i < desc->n_colors; i++) {
-        VkPipelineColorBlendAttachmentState *b = &o->blends[i];
-        b->blendEnable = desc->blend != HL_BLEND_OFF;
-        b->srcColorBlendFactor = blends[desc->blend].color[0];
-        b->dstColorBlendFactor = blends[desc->blend].color[1];
-        b->colorBlendOp = blends[desc->blend].op;
-        b->srcAlphaBlendFactor = blends[desc->blend].alpha[0];
-        b->dstAlphaBlendFactor = blends[desc->blend].alpha[1];
-        b->alphaBlendOp = blends[desc->blend].op;
-        b->colorWriteMask = desc->no_color_write ? 0 : 15;
-    }
-    o->blend.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO;
-    o->blend.attachmentCount = desc->n_colors;
-    o->blend.pAttachments = o->blends;
+    return (VkPipelineColorBlendAttachmentState){
+        .blendEnable = desc->blend != HL_BLEND_OFF,
+        .srcColorBlendFactor = blends[desc->blend].color[0],
+        .dstColorBlendFactor = blends[desc->blend].color[1],
+        .colorBlendOp = blends[desc->blend].op,
+        .srcAlphaBlendFactor = blends[desc->blend].alpha[0],
+        .dstAlphaBlendFactor = blends[desc->blend].alpha[1],
+        .alphaBlendOp = blends[desc->blend].op,
+        .colorWriteMask = desc->no_color_write ? 0 : 15
+    };
 }
 
-static void depth_state(const struct hl_prog_desc *desc, struct output *o)
+static VkPipelineDepthStencilStateCreateInfo depth_state(
+    const struct hl_prog_desc *desc)
 {
     static const VkCompareOp ops[] = {
         [HL_COMPARE_OFF] = VK_COMPARE_OP_ALWAYS,
@@ -194,187 +202,224 @@ static void depth_state(const struct hl_prog_desc *desc, struct output *o)
         [HL_COMPARE_GREATER] = VK_COMPARE_OP_GREATER,
         [HL_COMPARE_ALWAYS] = VK_COMPARE_OP_ALWAYS
     };
-    o->depth.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO;
-    o->depth.depthTestEnable = desc->depth_test != HL_COMPARE_OFF;
-    o->depth.depthWriteEnable = desc->depth_write;
-    o->depth.depthCompareOp = ops[desc->depth_test];
-}
-
-static void raster_state(const struct hl_prog_desc *desc, struct output *o)
-{
-    o->raster.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO;
-    o->raster.polygonMode = VK_POLYGON_MODE_FILL;
-    o->raster.cullMode = desc->cull == HL_CULL_NONE ? VK_CULL_MODE_NONE
-                       : desc->cull == HL_CULL_BACK ? VK_CULL_MODE_BACK_BIT
-                                                    : VK_CULL_MODE_FRONT_BIT;
-    /* Vulkan judges winding as it is seen on the screen, row 0 on top: the
-     * same as "y up" of hal.h, with no turn for clip space's y. */
-    o->raster.frontFace = desc->mirrored ? VK_FRONT_FACE_CLOCKWISE
-                                         : VK_FRONT_FACE_COUNTER_CLOCKWISE;
-    o->raster.lineWidth = 1.0f;
-    o->multisample.sType =
-        VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO;
-    o->multisample.rasterizationSamples =
-        (VkSampleCountFlagBits)desc->samples;
-}
-
-static void output_state(const struct hl_prog_desc *desc, struct output *o)
-{
-    uint32_t i;
-    blend_state(desc, o);
-    depth_state(desc, o);
-    raster_state(desc, o);
-    for (i = 0; i < desc->n_colors; i++)
-        o->colors[i] = hlvk_format(desc->color[i]);
-    o->rendering.sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO;
-    o->rendering.colorAttachmentCount = desc->n_colors;
-    o->rendering.pColorAttachmentFormats = o->colors;
-    o->rendering.depthAttachmentFormat = hlvk_format(desc->depth);
-}
-
-/* ---- stages ---------------------------------------------------------- */
-
-struct stages {
-    VkShaderModule modules[2];
-    VkPipelineShaderStageCreateInfo info[2];
-    uint32_t n;
-    VkSpecializationMapEntry entries[HL_MAX_SPECS];
-    uint32_t values[HL_MAX_SPECS];
-    VkSpecializationInfo spec;
-};
-
-/* Words NULL: the stage is empty, or has no SPIR-V. */
-static struct hl_spirv stage_code(const struct hl_stage *stage)
-{
-    struct hl_spirv s = { NULL, 0 };
-    if (stage->builtin != HL_SHADER_NONE)
-        return hl_spirv[stage->builtin];
-    if (stage->code) {
-        s.words = stage->code->spirv;
-        s.bytes = stage->code->spirv_bytes;
-    }
-    return s;
-}
-
-static void specialise(const struct hl_prog_desc *desc, struct stages *s)
-{
-    uint32_t i;
-    for (i = 0; i < desc->n_specs; i++) {
-        s->values[i] = desc->spec[i].value;
-        s->entries[i].constantID = desc->spec[i].id;
-        s->entries[i].offset = i * 4;
-        s->entries[i].size = 4;
-    }
-    s->spec.mapEntryCount = desc->n_specs;
-    s->spec.pMapEntries = s->entries;
-    s->spec.dataSize = desc->n_specs * 4;
-    s->spec.pData = s->values;
-}
-
-static enum hl_result stage_add(struct hlvk *v, struct stages *s,
-                                VkShaderStageFlagBits bit,
-                                const struct hl_spirv *code)
-{
-    VkShaderModuleCreateInfo info = {
-        .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO
+    return (VkPipelineDepthStencilStateCreateInfo){
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO,
+        .depthTestEnable = desc->depth_test != HL_COMPARE_OFF,
+        .depthWriteEnable = desc->depth_write,
+        .depthCompareOp = ops[desc->depth_test]
     };
-    VkPipelineShaderStageCreateInfo *stage = &s->info[s->n];
-    enum hl_result result;
-    if (!code->words || code->bytes < 20 || code->bytes % 4) {
-        hl_bk_log(v->device, HL_LOG_ERROR, HL_MSG_ARGUMENT,
-                  "hl_prog_desc: a stage comes without SPIR-V", NULL, NULL);
-        return HL_ERR_UNSUPPORTED;
-    }
-    info.codeSize = code->bytes;
-    info.pCode = code->words;
-    result = hlvk_check(v, vkCreateShaderModule(v->vk, &info, NULL,
-                                                &s->modules[s->n]),
-                        "vkCreateShaderModule");
-    stage->sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
-    stage->stage = bit;
-    stage->module = s->modules[s->n];
-    stage->pName = "main";
-    stage->pSpecializationInfo = &s->spec;
-    s->n++;
-    return result;
 }
 
-/* ---- pipeline -------------------------------------------------------- */
-
-static enum hl_result pipeline(struct hlvk *v,
-                               const struct hl_prog_desc *desc,
-                               const struct stages *s,
-                               const struct vertex_input *input,
-                               VkPipeline *out)
+static VkPipelineRasterizationStateCreateInfo raster_state(
+    const struct hl_prog_desc *desc)
 {
-    static const VkDynamicState dynamic_states[] = {
+    return (VkPipelineRasterizationStateCreateInfo){
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO,
+        .polygonMode = VK_POLYGON_MODE_FILL,
+        .cullMode = desc->cull == HL_CULL_NONE ? VK_CULL_MODE_NONE
+                  : desc->cull == HL_CULL_BACK ? VK_CULL_MODE_BACK_BIT
+                                               : VK_CULL_MODE_FRONT_BIT,
+        /* Vulkan judges winding as seen on the screen, row 0 on top: the
+         * same as "y up" of hal.h, with no turn for clip space's y. */
+        .frontFace = desc->mirrored ? VK_FRONT_FACE_CLOCKWISE
+                                    : VK_FRONT_FACE_COUNTER_CLOCKWISE,
+        .lineWidth = 1.0f
+    };
+}
+
+/* ---- pipeline ---------------------------------------------------------- */
+
+static VkResult output_pipeline(struct hlvk *v,
+                                const struct hl_prog_desc *desc,
+                                VkGraphicsPipelineCreateInfo *info,
+                                VkPipeline *out)
+{
+    VkPipelineColorBlendAttachmentState blend[HL_MAX_COLORS];
+    VkFormat colors[HL_MAX_COLORS];
+    for (uint32_t i = 0; i < desc->n_colors; i++) {
+        blend[i] = blend_state(desc);
+        colors[i] = hlvk_format(desc->color[i]);
+    }
+    VkPipelineColorBlendStateCreateInfo blending = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
+        .attachmentCount = desc->n_colors, .pAttachments = blend
+    };
+    VkPipelineRenderingCreateInfo rendering = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO,
+        .colorAttachmentCount = desc->n_colors,
+        .pColorAttachmentFormats = colors,
+        .depthAttachmentFormat = hlvk_format(desc->depth)
+    };
+    VkPipelineDepthStencilStateCreateInfo depth = depth_state(desc);
+    VkPipelineRasterizationStateCreateInfo raster = raster_state(desc);
+    VkPipelineMultisampleStateCreateInfo multisample = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO,
+        .rasterizationSamples = (VkSampleCountFlagBits)desc->samples
+    };
+    info->pNext = &rendering;
+    info->pRasterizationState = &raster;
+    info->pMultisampleState = &multisample;
+    info->pDepthStencilState = &depth;
+    info->pColorBlendState = &blending;
+    return vkCreateGraphicsPipelines(v->vk, VK_NULL_HANDLE, 1, info, NULL,
+                                     out);
+}
+
+static enum hl_result make_pipeline(
+    struct hlvk *v, const struct hl_prog_desc *desc,
+    const VkPipelineShaderStageCreateInfo *stages, uint32_t n_stages,
+    const struct vertex_input *input, VkPipeline *out)
+{
+    static const VkDynamicState states[] = {
         VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR
     };
-    VkPipelineDynamicStateCreateInfo dynamic = {
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO
+    static const VkPipelineDynamicStateCreateInfo dynamic = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO,
+        .dynamicStateCount = 2, .pDynamicStates = states
+    };
+    static const VkPipelineViewportStateCreateInfo viewport = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO,
+        .viewportCount = 1, .scissorCount = 1
     };
     VkPipelineInputAssemblyStateCreateInfo assembly = {
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO
-    };
-    VkPipelineViewportStateCreateInfo viewport = {
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
+        .topology = desc->topology == HL_TOPOLOGY_LINES
+                    ? VK_PRIMITIVE_TOPOLOGY_LINE_LIST
+                    : VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST
     };
     VkGraphicsPipelineCreateInfo info = {
-        .sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO
+        .sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
+        .stageCount = n_stages, .pStages = stages,
+        .pVertexInputState = &input->info, .pInputAssemblyState = &assembly,
+        .pViewportState = &viewport, .pDynamicState = &dynamic,
+        .layout = v->layout
     };
-    struct output o;
-    memset(&o, 0, sizeof o);
-    output_state(desc, &o);
-    dynamic.dynamicStateCount = 2;
-    dynamic.pDynamicStates = dynamic_states;
-    assembly.topology = desc->topology == HL_TOPOLOGY_LINES
-                        ? VK_PRIMITIVE_TOPOLOGY_LINE_LIST
-                        : VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
-    viewport.viewportCount = viewport.scissorCount = 1;
-    info.pNext = &o.rendering;
-    info.stageCount = s->n;
-    info.pStages = s->info;
-    info.pVertexInputState = &input->info;
-    info.pInputAssemblyState = &assembly;
-    info.pViewportState = &viewport;
-    info.pRasterizationState = &o.raster;
-    info.pMultisampleState = &o.multisample;
-    info.pDepthStencilState = &o.depth;
-    info.pColorBlendState = &o.blend;
-    info.pDynamicState = &dynamic;
-    info.layout = v->layout;
-    return hlvk_check(v, vkCreateGraphicsPipelines(v->vk, VK_NULL_HANDLE, 1,
-                                                   &info, NULL, out),
+    return hlvk_check(v, output_pipeline(v, desc, &info, out),
                       "vkCreateGraphicsPipelines");
+}
+
+/* ---- stages ------------------------------------------------------------ */
+
+struct specs {
+    VkSpecializationMapEntry entries[HL_MAX_SPECS];
+    uint32_t values[HL_MAX_SPECS];
+    VkSpecializationInfo info;
+};
+
+static void specialise(const struct hl_prog_desc *desc, struct specs *s)
+{
+    for (uint32_t i = 0; i < desc->n_specs; i++) {
+        s->values[i] = desc->spec[i].value;
+        s->entries[i] = (VkSpecializationMapEntry){
+            desc->spec[i].id, i * 4, 4
+        };
+    }
+    s->info = (VkSpecializationInfo){
+        desc->n_specs, s->entries, desc->n_specs * 4, s->values
+    };
+}
+
+static enum hl_result stage_read(struct hlvk *v, const struct hl_stage *from,
+                                 struct stage *s)
+{
+    struct hl_spirv code = { NULL, 0 };
+    if (from->builtin != HL_SHADER_NONE)
+        code = hl_spirv[from->builtin];
+    else if (from->code)
+        code = (struct hl_spirv){ from->code->spirv,
+                                  from->code->spirv_bytes };
+    s->n_words = (uint32_t)(code.bytes / 4);
+    if (code.words && code.bytes >= 20 && code.bytes % 4 == 0) {
+        s->words = hl_bk_alloc(v->device, code.bytes);
+        if (!s->words)
+            return HL_ERR_MEMORY;
+        memcpy(s->words, code.words, code.bytes);
+        if (scan(s))
+            return HL_OK;
+    }
+    hl_bk_log(v->device, HL_LOG_ERROR, HL_MSG_ARGUMENT,
+              "hl_prog_desc: a stage comes without usable SPIR-V", NULL,
+              NULL);
+    return HL_ERR_UNSUPPORTED;
+}
+
+static enum hl_result stage_module(struct hlvk *v, const struct stage *s,
+                                   const struct specs *specs,
+                                   VkShaderStageFlagBits bit,
+                                   VkPipelineShaderStageCreateInfo *out)
+{
+    VkShaderModuleCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
+        .codeSize = s->n_words * 4, .pCode = s->words
+    };
+    *out = (VkPipelineShaderStageCreateInfo){
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+        .stage = bit, .pName = "main", .pSpecializationInfo = &specs->info
+    };
+    return hlvk_check(v, vkCreateShaderModule(v->vk, &info, NULL,
+                                              &out->module),
+                      "vkCreateShaderModule");
+}
+
+static void find_uses(struct hlvk_prog *p, struct stage *vertex,
+                      const struct stage *fragment)
+{
+    uint32_t all = bindings(vertex, HLVK_SET_UNIFORMS);
+    uint32_t shared = bindings(fragment, HLVK_SET_UNIFORMS);
+    p->reads[HLVK_SET_UNIFORMS] = shared;
+    p->reads[HLVK_SET_VERTEX_UNIFORMS] = all & ~shared;
+    p->reads[HLVK_SET_TEXTURES] = bindings(vertex, HLVK_SET_TEXTURES) |
+                                  bindings(fragment, HLVK_SET_TEXTURES);
+    p->reads[HLVK_SET_STORAGE] = bindings(vertex, HLVK_SET_STORAGE) |
+                                 bindings(fragment, HLVK_SET_STORAGE);
+    move_uniforms(vertex, shared);
+}
+
+static enum hl_result build(struct hlvk *v, const struct hl_prog_desc *desc,
+                            struct stage stage[2], struct hlvk_prog *p)
+{
+    VkPipelineShaderStageCreateInfo info[2];
+    struct vertex_input input;
+    struct specs specs;
+    bool fragment = desc->fragment.builtin || desc->fragment.code;
+    memset(info, 0, sizeof info);
+    enum hl_result r = stage_read(v, &desc->vertex, &stage[0]);
+    if (!r && fragment)
+        r = stage_read(v, &desc->fragment, &stage[1]);
+    if (r)
+        return r;
+    find_uses(p, &stage[0], &stage[1]);
+    p->streams = vertex_input(&desc->layout, &input);
+    specialise(desc, &specs);
+    r = stage_module(v, &stage[0], &specs, VK_SHADER_STAGE_VERTEX_BIT,
+                     &info[0]);
+    if (!r && fragment)
+        r = stage_module(v, &stage[1], &specs, VK_SHADER_STAGE_FRAGMENT_BIT,
+                         &info[1]);
+    if (!r)
+        r = make_pipeline(v, desc, info, fragment ? 2 : 1, &input,
+                          &p->pipeline);
+    vkDestroyShaderModule(v->vk, info[0].module, NULL);
+    vkDestroyShaderModule(v->vk, info[1].module, NULL);
+    return r;
 }
 
 enum hl_result hlvk_prog_create(void *state, uint32_t slot,
                                 const struct hl_prog_desc *desc)
 {
     struct hlvk *v = state;
-    struct hl_spirv vertex = stage_code(&desc->vertex);
-    struct hl_spirv fragment = stage_code(&desc->fragment);
     struct hlvk_prog *p = hl_bk_alloc(v->device, sizeof *p);
-    struct vertex_input input;
-    struct stages s;
-    enum hl_result result;
-    if (!p)
-        return HL_ERR_MEMORY;
-    memset(&s, 0, sizeof s);
-    memset(&input, 0, sizeof input);
-    specialise(desc, &s);
-    result = stage_add(v, &s, VK_SHADER_STAGE_VERTEX_BIT, &vertex);
-    if (!result && (desc->fragment.builtin || desc->fragment.code))
-        result = stage_add(v, &s, VK_SHADER_STAGE_FRAGMENT_BIT, &fragment);
-    if (!result) {
-        p->streams = vertex_input(&desc->layout, inputs(&vertex), &input);
-        result = pipeline(v, desc, &s, &input, &p->pipeline);
+    struct stage *stage = hl_bk_alloc(v->device, 2 * sizeof *stage);
+    enum hl_result r = HL_ERR_MEMORY;
+    if (p && stage) {
+        r = build(v, desc, stage, p);
+        hl_bk_free(v->device, stage[0].words);
+        hl_bk_free(v->device, stage[1].words);
     }
-    vkDestroyShaderModule(v->vk, s.modules[0], NULL);
-    vkDestroyShaderModule(v->vk, s.modules[1], NULL);
-    if (result) {
+    hl_bk_free(v->device, stage);
+    if (r) {
         hl_bk_free(v->device, p);
-        return result;
+        return r;
     }
     hlvk_name(v, VK_OBJECT_TYPE_PIPELINE, (uint64_t)p->pipeline, desc->label);
     v->progs[slot] = p;

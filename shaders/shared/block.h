@@ -48,6 +48,24 @@
 #define HL_SPEC_BASE 7      /* forward: 1 adds emission and ambient          */
 #define HL_SPEC_TWO_SIDED 8 /* 1: a visible back face turns its normal over  */
 
+#define HL_SPEC_LIGHT_BITS 9 /* HL_BITS_*: how L-buffer texels are stored    */
+/* What a plan fixes for good is compiled in: software drivers load uniforms
+ * lane by lane, two dozen instructions each. Floats by their bits. */
+#define HL_SPEC_LIGHT_WIDTH 10   /* L-buffer texels, float                   */
+#define HL_SPEC_LIGHT_HEIGHT 11
+#define HL_SPEC_RATIO_X 12       /* L texels a frame pixel                   */
+#define HL_SPEC_RATIO_Y 13
+#define HL_SPEC_DSF_K 14
+#define HL_SPEC_DSF_C 15
+#define HL_SPEC_DSF_TAU 16
+#define HL_SPEC_LIGHT_SCALE 17   /* light = stored * scale                   */
+
+/* L-buffers are sampled as raw bits (R32, RG32 or RGBA32 UINT), since one
+ * gather of 32-bit words costs less than four fetches of texels. */
+#define HL_BITS_HALF 0      /* 4 x 16 float                                  */
+#define HL_BITS_UNORM16 1
+#define HL_BITS_FLOAT 2     /* 4 x 32 float                                  */
+#define HL_BITS_UNORM8 3
 #define HL_SPECULAR_NONE 0
 #define HL_SPECULAR_CONSTANT 1
 #define HL_SPECULAR_CHANNEL 2
@@ -67,20 +85,31 @@
 #define HL_BATCH_MAX 16
 #define HL_LIGHT_VEC4S 4
 #define HL_POINT_VEC4S 2
+/* Lights as flat varyings (HL_FLAT stages): 28 vec4 of them and two more of
+ * frame data, of the 31 that every Vulkan 1.3 desktop device passes on. */
+#define HL_FLAT_VEC4S 28
+
+/* Varyings of mesh stages, by location. */
+#define HL_VARY_IDS 0       /* flat vec4: region id, exponent code, 1/far, far */
+#define HL_VARY_NORMAL 1
+#define HL_VARY_TANGENT 2
+#define HL_VARY_UV 3
+#define HL_VARY_COLOR 4
+#define HL_VARY_ALBEDO 5    /* flat vec4: rho, alpha; of the factors         */
+#define HL_VARY_SPECULAR 6  /* flat vec4: ks, exponent n                     */
+#define HL_VARY_BASE 7      /* flat vec4: e + rho A, 0                       */
+#define HL_VARY_POSITION 8  /* view position                                 */
 
 #ifdef HL_GLSL
 layout(set = 0, binding = HL_SLOT_FRAME, std140) uniform hl_frame_block {
 #else
 struct hl_frame_block {
 #endif
-    /* View position of a pixel centre p at depth z > 0: ((p.x * x + z) * z,
-     * (p.y * y + w) * z, -z), of the frame and of the L-buffer. */
-    hl_vec4 ray, ray_light;
+    /* View position of an L-buffer texel centre p at depth z > 0:
+     * ((p.x * x + z) * z, (p.y * y + w) * z, -z). */
+    hl_vec4 ray_light;
     hl_vec4 depth;      /* view z = x / (d + y); 1 / far; far                */
     hl_vec4 ambient;    /* rgb; w: scale of stored light (stored * w = light) */
-    hl_vec4 light_size; /* L-buffer texels x, y; L texels a frame pixel x, y */
-    hl_vec4 dsf;        /* q m, k, c, tap distance in L texels               */
-    hl_vec4 dsf_id;     /* 1 / id steps, half an id step, constant tau, 0    */
     hl_vec4 misc;       /* exponent, tile size px, tiles a row, 0            */
 #ifdef HL_GLSL
 } hl_frame;
@@ -93,8 +122,9 @@ struct hl_object_block {
 #endif
     hl_mat4 clip;       /* model to clip                                     */
     hl_mat4 normal;     /* model to view, cofactor 3 x 3: normals            */
-    hl_mat4 tangent;    /* model to view 3 x 3: tangents                     */
+    hl_mat4 model_view; /* positions and tangents                            */
     hl_vec4 ids;        /* id base, object index, list offset, list count    */
+    hl_vec4 flat_ids;   /* exponent code; -1 for mirrored objects, else 1    */
 #ifdef HL_GLSL
 } hl_object;
 #else

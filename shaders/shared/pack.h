@@ -6,14 +6,18 @@
 
 /* K eq. 1: unit view-space normal (x right, y up, z to the viewer) to the
  * half-sphere n' = (n + z) / |n + z|, of which x and y are stored. Singular
- * at (0,0,-1), where |n + z| = 0: the clamp gives (0,0), which decodes to
- * (0,0,1). NaN or zero input gives some finite value by the same clamp. */
+ * at (0,0,-1), where |n + z| = 0: within 1e-6 of it, and for input that is no
+ * direction (zero, NaN, infinite), the result is (0,0), which decodes to
+ * (0,0,1). */
 HL_FN hl_vec2 hl_normal_encode(hl_vec3 n)
 {
     float z = n.z + 1.0f;
     float len2 = n.x * n.x + n.y * n.y + z * z;
-    float inv = len2 > 1e-12f ? 1.0f / hl_sqrt(len2) : 0.0f;
-    return hl_v2(n.x * inv, n.y * inv);
+    if (len2 > 1e-12f && len2 < 1e12f) {
+        float inv = 1.0f / hl_sqrt(len2);
+        return hl_v2(n.x * inv, n.y * inv);
+    }
+    return hl_v2(0.0f, 0.0f);
 }
 
 /* K eq. 2 and 3. After quantisation x^2 + y^2 may exceed 1: the paper's

@@ -1,0 +1,201 @@
+/* SPDX-License-Identifier: Zlib */
+/* The JSON of render; docs/json.md says what each key means. */
+#include <string.h>
+#include "platforms/cli/json.h"
+#include "platforms/cli/plan_text.h"
+#include "platforms/cli/render.h"
+
+/* cJSON adds to a NULL object without harm; the emission then fails. */
+static cJSON *object(cJSON *in, const char *key)
+{
+    return cJSON_AddObjectToObject(in, key);
+}
+
+static void text(cJSON *in, const char *key, const char *value)
+{
+    cJSON_AddStringToObject(in, key, value ? value : "");
+}
+
+static void put3(cJSON *in, const char *key, const float v[3])
+{
+    double d[3] = { (double)v[0], (double)v[1], (double)v[2] };
+    hlc_json_reals(in, key, d, 3, 9);
+}
+
+/* 0 stands for no limit. */
+static void put_limit(cJSON *in, const char *key, double metres)
+{
+    if (metres > 0)
+        hlc_json_real(in, key, metres, 9);
+    else
+        cJSON_AddNullToObject(in, key);
+}
+
+static void put_scene(cJSON *tree, const struct hlc_render *r)
+{
+    const struct hlh_scene *s = &r->scene;
+    cJSON *o = object(tree, "scene");
+    text(o, "name", s->name);
+    hlc_json_uint(o, "objects", s->n_objects);
+    hlc_json_uint(o, "triangles", s->n_triangles);
+    hlc_json_uint(o, "lights", s->n_lights);
+    hlc_json_uint(o, "lights_range_derived", s->lights_range_derived);
+    cJSON_AddBoolToObject(o, "lights_are_default", s->lights_are_default);
+    hlc_json_uint(o, "triangles_dropped", s->triangles_dropped);
+    hlc_json_uint(o, "normals_repaired", s->normals_repaired);
+    put3(o, "ambient", s->ambient);
+    put3(o, "background", s->background);
+    put3(o, "bounds_min", s->bounds_min);
+    put3(o, "bounds_max", s->bounds_max);
+    o = object(tree, "camera");
+    put3(o, "eye", s->camera.eye);
+    put3(o, "target", s->camera.target);
+    hlc_json_real(o, "vfov", (double)s->camera.vfov, 9);
+    put_limit(o, "near", r->near);
+    put_limit(o, "far", r->far);
+    cJSON_AddBoolToObject(o, "default", s->camera_is_default);
+}
+
+static void put_machine(cJSON *tree, const struct hlc_render *r)
+{
+    bool reference = r->o->reference;
+    text(tree, "backend", reference ? "reference" : r->caps.backend);
+    text(tree, "device", reference ? "host" : r->caps.device);
+    text(tree, "driver", reference ? "" : r->caps.driver);
+    text(tree, "profile", "native");
+    text(tree, "pipeline", reference ? "reference"
+                                     : hlc_pipeline_name(r->plan.pipeline));
+    if (!reference) {
+        cJSON_AddItemToObject(tree, "plan", hlc_plan_json(&r->plan));
+        return;
+    }
+    hlc_json_uint(tree, "threads", r->threads);
+    cJSON_AddNullToObject(tree, "plan");
+}
+
+static void put_spread(cJSON *tree, const char *key,
+                       const struct hlc_spread *s)
+{
+    cJSON *o = object(tree, key);
+    const double v[3] = { s->median, s->min, s->max };
+    const char *const names[3] = { "median", "min", "max" };
+    for (int i = 0; i < 3; i++) {
+        if (s->n)
+            hlc_json_real(o, names[i], v[i], 5);
+        else
+            cJSON_AddNullToObject(o, names[i]);
+    }
+    hlc_json_uint(o, "n", s->n);
+}
+
+static void put_times(cJSON *tree, const struct hlc_render *r)
+{
+    put_spread(tree, "frame_ms", &r->frame_ms);
+    if (!r->o->reference) {
+        put_spread(tree, "record_ms", &r->record_ms);
+        hlc_json_real(tree, "first_frame_ms", r->first_ms, 5);
+    }
+    cJSON *passes = cJSON_AddArrayToObject(tree, "passes");
+    for (uint32_t i = 0; i < r->n_passes; i++) {
+        cJSON *p = cJSON_CreateObject();
+        text(p, "name", r->passes[i].name);
+        hlc_json_real(p, "ms", r->passes[i].ms, 5);
+        cJSON_AddItemToArray(passes, p);
+    }
+}
+
+/* Of the shading pass: L-buffer texels for the inferred pipeline. */
+static double shaded_pixels(const struct hlc_render *r)
+{
+    if (r->inside.lights)
+        return (double)r->inside.lights_width * r->inside.lights_height;
+    return (double)r->o->width * r->o->height;
+}
+
+static void put_counts(cJSON *tree, const struct hlc_render *r)
+{
+    cJSON *c = object(tree, "counts");
+    if (r->o->reference) {
+        cJSON_AddNullToObject(c, "draws");
+        cJSON_AddNullToObject(c, "blends");
+        hlc_json_uint(c, "surfaces", r->surfaces);
+    } else {
+        hlc_json_uint(c, "draws", r->stats.draws);
+        hlc_json_uint(c, "blends", r->stats.blends);
+        hlc_json_uint(c, "items", r->stats.items);
+        hlc_json_uint(c, "items_culled", r->stats.items_culled);
+        hlc_json_uint(c, "lights", r->stats.lights);
+        hlc_json_uint(c, "lights_culled", r->stats.lights_culled);
+        hlc_json_uint(c, "light_refs", r->stats.light_refs);
+    }
+    hlc_json_uint(c, "light_evaluations", r->light_evaluations);
+    hlc_json_real(c, "lights_per_pixel_mean",
+                  (double)r->light_evaluations / shaded_pixels(r), 9);
+    /* Lights that a full list left out: none of today's pipelines drops one,
+     * they refuse the frame instead. */
+    hlc_json_uint(c, "overflow", 0);
+    hlc_json_uint(tree, "non_finite_pixels", r->non_finite);
+}
+
+static void put_dsf(cJSON *tree, const struct hlc_render *r)
+{
+    double taps[5] = { 0 };
+    size_t n = (size_t)r->picture.width * r->picture.height;
+    if (!r->inside.rejects) {
+        cJSON_AddNullToObject(tree, "dsf");
+        return;
+    }
+    for (size_t i = 0; i < n; i++)
+        if (r->inside.rejects[i] >= 1 && r->inside.rejects[i] <= 5)
+            taps[r->inside.rejects[i] - 1]++;
+    hlc_json_reals(object(tree, "dsf"), "taps_rejected", taps, 5, 10);
+}
+
+static void put_bytes(cJSON *tree, const struct hlc_render *r)
+{
+    uint64_t targets = 0;
+    if (r->o->reference) {
+        cJSON_AddNullToObject(tree, "bytes");
+        cJSON_AddNullToObject(tree, "ids");
+        cJSON_AddNullToObject(tree, "validation_errors");
+        return;
+    }
+    cJSON *b = object(tree, "bytes");
+    for (uint32_t i = 0; i < r->plan.n_targets; i++)
+        targets += r->plan.target[i].bytes;
+    hlc_json_uint(b, "targets", targets);
+    hlc_json_real(b, "moved_per_pixel", (double)r->plan.moved_per_pixel, 6);
+    hlc_json_uint(b, "scene", r->world.bytes);
+    cJSON *ids = object(tree, "ids");
+    text(ids, "scheme", r->world.ids.scheme);
+    hlc_json_uint(ids, "regions", r->world.ids.regions);
+    hlc_json_uint(ids, "highest", r->world.ids.highest);
+    hlc_json_uint(ids, "collisions", r->world.ids.collisions);
+    if (r->o->validation)
+        hlc_json_uint(tree, "validation_errors", r->validation_errors);
+    else
+        cJSON_AddNullToObject(tree, "validation_errors");
+}
+
+bool hlc_render_json(const struct hlc_render *r, struct hlh_error *error)
+{
+    cJSON *tree = hlc_json_begin("render");
+    bool device = !r->o->reference;
+    uint32_t lw = device ? r->plan.light_width : 0;
+    uint32_t lh = device ? r->plan.light_height : 0;
+    put_scene(tree, r);
+    hlc_json_size(tree, "size", r->o->width, r->o->height);
+    hlc_json_size(tree, "light_size", lw ? lw : r->o->width,
+                  lh ? lh : r->o->height);
+    hlc_json_uint(tree, "samples", r->o->supersample
+                  ? (uint64_t)r->o->supersample * r->o->supersample
+                  : r->o->samples);
+    put_machine(tree, r);
+    put_times(tree, r);
+    put_counts(tree, r);
+    put_dsf(tree, r);
+    put_bytes(tree, r);
+    bool ok = hlc_json_emit(tree, r->o->json, error);
+    cJSON_Delete(tree);
+    return ok;
+}
