@@ -12,9 +12,10 @@ enum hl_result hl_camera_look_at(struct hl_camera *out, const float eye[3],
         !(near > 0.0f) || !(far > near))
         return HL_ERR_INVALID;
     back = hl_normalize3(back);
-    /* Straight up or down: within float's reach of the y axis. */
-    hl_vec3 up = hl_abs(back.y) > 0.999999f ? hl_v3(0, 0, -1)
-                                            : hl_v3(0, 1, 0);
+    /* Straight up or down: nearer the y axis than a float direction can say
+     * (1e-6 radians). */
+    float level = sqrtf(back.x * back.x + back.z * back.z);
+    hl_vec3 up = level < 1e-6f ? hl_v3(0, 0, -1) : hl_v3(0, 1, 0);
     hl_vec3 x = hl_normalize3(hl_cross3(up, back));
     hl_vec3 y = hl_cross3(back, x);
     const float v[16] = { x.x, y.x, back.x, 0, x.y, y.y, back.y, 0,

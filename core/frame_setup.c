@@ -144,10 +144,12 @@ static bool is_full(const struct hl_surface *s)
     return s->textures != 0 || s->vertex_color || s->masked;
 }
 
+/* Strictly nearer: of coincident surfaces the first drawn stays, in every
+ * pass and as in the reference. */
 static enum hl_compare nearer(const struct hl_plan *plan)
 {
-    return plan->reversed_depth ? HL_COMPARE_GREATER_EQUAL
-                                : HL_COMPARE_LESS_EQUAL;
+    return plan->reversed_depth ? HL_COMPARE_GREATER
+                                : HL_COMPARE_LESS;
 }
 
 static enum hl_format role_format(const struct hl_plan *plan, enum hl_role role)
@@ -294,6 +296,8 @@ enum hl_result hl_screen_program(struct hl_renderer *r,
     p.blend = blend;
     light_specs(&r->plan, &p, batch);
     spec_float(&p, HL_SPEC_LIGHT_SCALE, r->plan.light_scale);
+    spec_float(&p, HL_SPEC_LIGHT_WIDTH, (float)r->plan.light_width);
+    spec_float(&p, HL_SPEC_LIGHT_HEIGHT, (float)r->plan.light_height);
     return hl_prog_create(r->device, out, &p);
 }
 

@@ -13,11 +13,15 @@ static void forward_pass(struct hl_plan *p, uint32_t lights_a_draw)
     f->color[0] = HL_ROLE_COLOR;
     f->depth = HL_ROLE_DEPTH;
     f->depth_write = true;
-    f->depth_test = p->reversed_depth ? HL_COMPARE_GREATER_EQUAL
-                                      : HL_COMPARE_LESS_EQUAL;
+    f->depth_test = p->reversed_depth ? HL_COMPARE_GREATER
+                                      : HL_COMPARE_LESS;
     f->blend = HL_BLEND_ADD;
     f->lights_a_draw = lights_a_draw;
 }
+
+/* Further lights' programs are made whatever the frame brings, and blended
+ * surfaces blend: the target must, even where no light is known of. */
+static uint32_t at_least_one(uint32_t blends) { return blends ? blends : 1; }
 
 static uint32_t up(float x) { return x > 0 ? (uint32_t)ceilf(x) : 0; }
 
@@ -50,29 +54,33 @@ enum hl_refusal hl_plan_forward(struct hl_plan *p, const struct hl_ask *ask)
 {
     hl_plan_common(p, ask);
     float an_object = ask->per_object;
-    uint32_t extra = an_object > FORWARD_BATCH
-                     ? up(an_object / FORWARD_BATCH) - 1 : 0;
+    /* A loop runs to its batch: no longer than the scene has lights. */
+    uint32_t all = ask->n.n_lights;
+    uint32_t batch = all >= FORWARD_BATCH ? FORWARD_BATCH : all ? all : 1;
+    uint32_t extra = an_object > (float)batch
+                     ? up(an_object / (float)batch) - 1 : 0;
     /* The largest object sees all lights: its pixels blend the most. */
-    uint32_t blends = (ask->n.n_lights + FORWARD_BATCH - 1) / FORWARD_BATCH;
-    enum hl_refusal r = hl_plan_frame_targets(p, ask, blends);
+    uint32_t blends = all / batch + (all % batch != 0);
+    enum hl_refusal r = hl_plan_frame_targets(p, ask, at_least_one(blends));
     if (r != HL_REFUSED_NOTHING)
         return r;
     p->specular = HL_SPECULAR_CONSTANT;
-    p->batch = FORWARD_BATCH;
+    p->batch = batch;
     if (ask->n.specular == HL_NEED_NO_SPECULAR)
         p->specular = HL_SPECULAR_NONE;
     hl_plan_why(p, p->specular ? HL_WHY_EXPONENT_CONSTANT
                                : HL_WHY_EXPONENT_NONE, p->exponent, 0, 0, 0);
-    forward_pass(p, FORWARD_BATCH);
+    forward_pass(p, batch);
     double draws = 1.0 + extra;
-    finish(p, ask, draws, draws * FORWARD_BATCH);
+    finish(p, ask, draws, draws * batch);
     return HL_REFUSED_NOTHING;
 }
 
 enum hl_refusal hl_plan_multipass(struct hl_plan *p, const struct hl_ask *ask)
 {
     hl_plan_common(p, ask);
-    enum hl_refusal r = hl_plan_frame_targets(p, ask, ask->n.n_lights);
+    uint32_t blends = at_least_one(ask->n.n_lights);
+    enum hl_refusal r = hl_plan_frame_targets(p, ask, blends);
     if (r != HL_REFUSED_NOTHING)
         return r;
     p->specular = ask->n.specular == HL_NEED_NO_SPECULAR

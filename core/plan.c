@@ -123,8 +123,8 @@ void hl_plan_finish(struct hl_plan *p, const struct hl_ask *ask,
         struct hl_plan_pass *b = hl_plan_add_pass(p, HL_PASS_BLENDED);
         b->color[0] = HL_ROLE_COLOR;
         b->depth = HL_ROLE_DEPTH;
-        b->depth_test = p->reversed_depth ? HL_COMPARE_GREATER_EQUAL
-                                          : HL_COMPARE_LESS_EQUAL;
+        b->depth_test = p->reversed_depth ? HL_COMPARE_GREATER
+                                          : HL_COMPARE_LESS;
         b->blend = HL_BLEND_OVER;
         hl_plan_why(p, HL_WHY_BLENDED_FORWARD, 0, 0, 0, 0);
     }
@@ -156,6 +156,9 @@ static enum hl_refusal check(const struct hl_needs *n,
     if ((n->batch && n->batch > HL_BATCH_MAX) ||
         (n->tile && (n->tile < 8 || n->tile > 256)) ||
         (unsigned)n->light_format >= HL_FORMAT_COUNT || n->lights > 7 ||
+        (unsigned)n->light_path > HL_LIGHT_PATH_LISTS ||
+        (unsigned)n->dsf > HL_DSF_CONSTANT_TAU ||
+        (unsigned)n->specular > HL_NEED_EXPONENTS ||
         !good(n->lights_per_pixel, 0, 1e9f) ||
         !good(n->lights_per_object, 0, 1e9f) || !good(n->far, 0, 1e9f) ||
         !good(n->dsf_k, 0, 1e3f) || !good(n->dsf_c, 0, 1) ||
@@ -206,22 +209,22 @@ static enum hl_refusal plan_auto(struct hl_plan *out, const struct hl_ask *ask)
 {
     enum hl_refusal why = HL_REFUSED_PIPELINE;
     struct hl_plan one;
-    float best = 0, second = 0;
+    float best = -1, second = 0;
     for (int i = 1; i < HL_PIPELINE_COUNT; i++) {
         enum hl_refusal r = plan_one(&one, (enum hl_pipeline)i, ask, true);
         if (r != HL_REFUSED_NOTHING) {
             why = why == HL_REFUSED_PIPELINE ? r : why;
             continue;
         }
-        if (best > 0 && one.cost_ms >= best) {
+        if (best >= 0 && one.cost_ms >= best) {
             second = second > 0 && second < one.cost_ms ? second : one.cost_ms;
             continue;
         }
-        second = best;
+        second = best >= 0 ? best : 0;
         best = one.cost_ms;
         *out = one;
     }
-    if (best <= 0)
+    if (best < 0)
         return why;
     out->reason[0].arg[1] = best;
     out->reason[0].arg[2] = second;

@@ -219,6 +219,8 @@ enum hl_result hl_device_open(struct hl_device **out,
     enum hl_result r = device_pools(d) ? HL_OK : HL_ERR_MEMORY;
     if (r == HL_OK)
         r = backend->open(d->state, d, &d->desc, &d->caps);
+    d->caps.uniform_align += d->caps.uniform_align == 0;
+    d->caps.storage_align += d->caps.storage_align == 0;
     /* The names in the desc are borrowed for this call only. */
     d->desc.device = no_desc.device;
     if (r != HL_OK) {
@@ -337,6 +339,8 @@ enum hl_result hl_buf_write(struct hl_device *d, hl_buf buf, size_t offset,
     if (slot == HL_NO_SLOT)
         return hl_refuse(d, HL_ERR_INVALID, HL_MSG_HANDLE, "hl_buf_write",
                          "not a live buffer");
+    if (d->lost)
+        return HL_ERR_DEVICE_LOST;
     size_t size = d->bufs[slot].bytes;
     if (offset > size || bytes > size - offset)
         return hl_refuse_number(d, HL_ERR_INVALID, HL_MSG_ARGUMENT,
@@ -372,6 +376,10 @@ static enum hl_result check_tex(struct hl_device *d, struct hl_tex_desc *t)
         return hl_refuse_number(d, HL_ERR_INVALID, HL_MSG_FORMAT,
                                 "hl_tex_desc.format", (uint64_t)t->format,
                                 " is not a format");
+    if (t->usage > 7)
+        return hl_refuse_number(d, HL_ERR_INVALID, HL_MSG_ARGUMENT,
+                                "hl_tex_desc.usage", t->usage,
+                                " has unknown bits");
     if (t->width == 0 || t->width > d->caps.max_tex_dim)
         return hl_refuse_number(d, HL_ERR_INVALID, HL_MSG_ARGUMENT,
                                 "hl_tex_desc.width", t->width,
@@ -477,6 +485,8 @@ enum hl_result hl_tex_write(struct hl_device *d, hl_tex tex, uint32_t mip,
     if (slot == HL_NO_SLOT)
         return hl_refuse(d, HL_ERR_INVALID, HL_MSG_HANDLE, "hl_tex_write",
                          "not a live texture");
+    if (d->lost)
+        return HL_ERR_DEVICE_LOST;
     const struct hl_tex_desc *t = &d->texs[slot];
     if (mip >= t->mips || t->samples > 1 ||
         hl_format_info(t->format)->kind == HL_KIND_DEPTH)
@@ -499,6 +509,8 @@ enum hl_result hl_tex_read(struct hl_device *d, hl_tex tex, void *out,
     if (slot == HL_NO_SLOT)
         return hl_refuse(d, HL_ERR_INVALID, HL_MSG_HANDLE, "hl_tex_read",
                          "not a live texture");
+    if (d->lost)
+        return HL_ERR_DEVICE_LOST;
     const struct hl_tex_desc *t = &d->texs[slot];
     const struct hl_format_info *f = hl_format_info(t->format);
     if (!(t->usage & HL_TEX_READBACK) || t->samples > 1)
@@ -518,6 +530,11 @@ static bool stage_empty(const struct hl_stage *s)
     return s->builtin == HL_SHADER_NONE && !s->code;
 }
 
+static bool is_depth(enum hl_format format)
+{
+    return hl_format_info(format)->kind == HL_KIND_DEPTH;
+}
+
 static enum hl_result check_targets(struct hl_device *d,
                                     const struct hl_prog_desc *p)
 {
@@ -525,7 +542,15 @@ static enum hl_result check_targets(struct hl_device *d,
         return hl_refuse_number(d, HL_ERR_UNSUPPORTED, HL_MSG_ARGUMENT,
                                 "hl_prog_desc.n_colors", p->n_colors,
                                 " is more than the device has");
+    if (p->samples & (p->samples - 1) || !(d->caps.samples & p->samples))
+        return hl_refuse_number(d, HL_ERR_UNSUPPORTED, HL_MSG_FORMAT,
+                                "hl_prog_desc.samples", p->samples,
+                                " is not a sample count of this device");
     for (uint32_t i = 0; i < p->n_colors; i++) {
+        if ((unsigned)p->color[i] >= HL_FORMAT_COUNT || is_depth(p->color[i]))
+            return hl_refuse_number(d, HL_ERR_INVALID, HL_MSG_FORMAT,
+                                    "hl_prog_desc.color", i,
+                                    " is not a colour format");
         const struct hl_format_caps *f = &d->caps.format[p->color[i]];
         int need = HL_USE_TARGET;
         if (p->blend != HL_BLEND_OFF)
@@ -535,10 +560,42 @@ static enum hl_result check_targets(struct hl_device *d,
                              hl_format_info(p->color[i])->name,
                              "not a target with this blend or sample count");
     }
-    if (p->depth != HL_FORMAT_NONE &&
-        hl_format_info(p->depth)->kind != HL_KIND_DEPTH)
+    if (p->depth == HL_FORMAT_NONE)
+        return HL_OK;
+    if (!is_depth(p->depth))
         return hl_refuse(d, HL_ERR_INVALID, HL_MSG_FORMAT,
                          "hl_prog_desc.depth", "not a depth format");
+    const struct hl_format_caps *z = &d->caps.format[p->depth];
+    if (!(z->use & HL_USE_TARGET) || !(z->samples & p->samples))
+        return hl_refuse(d, HL_ERR_UNSUPPORTED, HL_MSG_FORMAT,
+                         hl_format_info(p->depth)->name,
+                         "not a target with this sample count");
+    return HL_OK;
+}
+
+/* Every enum is an index into some backend's table. */
+static enum hl_result check_enums(struct hl_device *d,
+                                  const struct hl_prog_desc *p)
+{
+    const char *bad = (unsigned)p->blend > HL_BLEND_MAX ? "hl_prog_desc.blend"
+        : (unsigned)p->depth_test > HL_COMPARE_ALWAYS
+          ? "hl_prog_desc.depth_test"
+        : (unsigned)p->cull > HL_CULL_FRONT ? "hl_prog_desc.cull"
+        : (unsigned)p->topology > HL_TOPOLOGY_LINES ? "hl_prog_desc.topology"
+                                                    : NULL;
+    if (bad)
+        return hl_refuse(d, HL_ERR_INVALID, HL_MSG_ARGUMENT, bad,
+                         "not one of its enum");
+    for (int i = 0; i < HL_MAX_ATTRS; i++) {
+        const struct hl_attr *a = &p->layout.attr[i];
+        if (a->format != HL_ATTR_NONE &&
+            ((unsigned)a->format > HL_ATTR_F16X4 ||
+             a->stream >= HL_MAX_STREAMS))
+            return hl_refuse_number(d, HL_ERR_INVALID, HL_MSG_ARGUMENT,
+                                    "hl_prog_desc.layout.attr", (uint64_t)i,
+                                    " names a format or stream that does not"
+                                    " exist");
+    }
     return HL_OK;
 }
 
@@ -560,17 +617,12 @@ static enum hl_result check_prog(struct hl_device *d, struct hl_prog_desc *p)
         return hl_refuse_number(d, HL_ERR_INVALID, HL_MSG_ARGUMENT,
                                 "hl_prog_desc.n_specs", p->n_specs,
                                 " is too many");
-    for (int i = 0; i < HL_MAX_ATTRS; i++)
-        if (p->layout.attr[i].format != HL_ATTR_NONE &&
-            p->layout.attr[i].stream >= HL_MAX_STREAMS)
-            return hl_refuse_number(d, HL_ERR_INVALID, HL_MSG_ARGUMENT,
-                                    "hl_prog_desc.layout.attr", (uint64_t)i,
-                                    " names a stream that does not exist");
     if (p->depth_test == HL_COMPARE_OFF && p->depth_write)
         return hl_refuse(d, HL_ERR_INVALID, HL_MSG_ARGUMENT,
                          "hl_prog_desc.depth_write",
                          "needs a depth test (HL_COMPARE_ALWAYS)");
-    return check_targets(d, p);
+    enum hl_result r = check_enums(d, p);
+    return r == HL_OK ? check_targets(d, p) : r;
 }
 
 enum hl_result hl_prog_create(struct hl_device *d, hl_prog *out,

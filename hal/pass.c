@@ -272,7 +272,9 @@ enum hl_result hl_pass_run(struct hl_device *d, const struct hl_pass *pass)
     if (r != HL_OK)
         return r;
     if (!reserve_draws(d, pass->n_draws))
-        return HL_ERR_MEMORY;
+        return hl_refuse_number(d, HL_ERR_MEMORY, HL_MSG_MEMORY,
+                                "hl_pass.n_draws", pass->n_draws,
+                                " draws find no memory");
     uint32_t n = 0;
     uint64_t triangles = 0;
     for (uint32_t i = 0; i < pass->n_draws; i++) {

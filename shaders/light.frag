@@ -22,6 +22,8 @@ layout(location = 0) flat in vec4 v_ray;
 layout(location = 1) flat in vec4 v_terms;
 #endif
 layout(constant_id = HL_SPEC_LIGHT_SCALE) const float hl_spec_scale = 1.0;
+layout(constant_id = HL_SPEC_LIGHT_WIDTH) const float hl_spec_light_w = 1.0;
+layout(constant_id = HL_SPEC_LIGHT_HEIGHT) const float hl_spec_light_h = 1.0;
 layout(location = 0) out vec4 out_light;
 
 void main()
@@ -33,19 +35,22 @@ void main()
     vec4 ray = hl_frame.ray_light;
     vec3 terms = vec3(hl_frame.depth.xy, hl_frame.misc.x);
 #endif
-    ivec2 texel = ivec2(gl_FragCoord.xy);
-    float d = texelFetch(hl_tex_depth, texel, 0).x;
+    /* The texel's own centre, nearest filter: what texelFetch would give, for
+     * less work where the driver checks every fetch's level and bounds. */
+    vec2 uv = gl_FragCoord.xy * vec2(1.0 / hl_spec_light_w,
+                                     1.0 / hl_spec_light_h);
+    float d = texture(hl_tex_depth, uv).x;
     float z = terms.x / (d + terms.y);
     vec3 p = vec3((gl_FragCoord.xy * ray.xy + ray.zw) * z, -z);
-    vec2 e = texelFetch(hl_tex_normal, texel, 0).xy;
+    vec2 e = texture(hl_tex_normal, uv).xy;
     vec3 n = hl_normal_decode(hl_v2(hl_unorm_to_snorm(e.x),
                                     hl_unorm_to_snorm(e.y)));
     vec3 v = -p * inversesqrt(dot(p, p));
     float exponent = terms.z;
     if (hl_spec_specular == uint(HL_SPECULAR_CHANNEL))
-        exponent = hl_exponent_decode(texelFetch(hl_tex_exponent, texel, 0).x);
+        exponent = hl_exponent_decode(texture(hl_tex_exponent, uv).x);
 #ifdef HL_TILES
-    ivec2 t = texel / int(hl_frame.misc.y);
+    ivec2 t = ivec2(gl_FragCoord.xy) / int(hl_frame.misc.y);
     uvec2 list = hl_tiles.tile[t.y * int(hl_frame.misc.z) + t.x];
     hl_sum s = hl_sum_list(p, n, v, exponent, list.x, list.y);
 #else

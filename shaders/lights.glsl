@@ -50,33 +50,55 @@ void hl_add_light(inout hl_sum s, vec3 p, vec3 n, vec3 v, float exponent,
     }
 }
 
-/* A light's data from wherever the stage has it. */
 #ifdef HL_FLAT
+/* Lights as flat varyings. Every index is a constant: an indexed varying
+ * would be fetched lane by lane, which is what this form avoids. Drivers drop
+ * the calls beyond the batch, whose size is compiled in. */
 layout(location = 2) flat in vec4 v_light[HL_FLAT_VEC4S];
-#define HL_BATCH_DATA(i) v_light[min(i, HL_FLAT_VEC4S - 1u)]
-#else
-#define HL_BATCH_DATA(i) hl_lights.data[i]
-#endif
 
+#define HL_POINT(i) \
+    if (i < hl_spec_batch) \
+        hl_add_light(s, p, n, v, exponent, v_light[2 * i], \
+                     v_light[2 * i + 1], vec4(0.0), vec4(0.0));
+#define HL_ANY(i) \
+    if (i < hl_spec_batch) \
+        hl_add_light(s, p, n, v, exponent, v_light[4 * i], \
+                     v_light[4 * i + 1], v_light[4 * i + 2], \
+                     v_light[4 * i + 3]);
+
+hl_sum hl_sum_batch(vec3 p, vec3 n, vec3 v, float exponent)
+{
+    hl_sum s = hl_sum(vec3(0.0), vec3(0.0), 0.0);
+    if (hl_spec_kinds != 0u) {
+        HL_ANY(0) HL_ANY(1) HL_ANY(2) HL_ANY(3) HL_ANY(4) HL_ANY(5) HL_ANY(6)
+    } else {
+        HL_POINT(0) HL_POINT(1) HL_POINT(2) HL_POINT(3) HL_POINT(4)
+        HL_POINT(5) HL_POINT(6) HL_POINT(7) HL_POINT(8) HL_POINT(9)
+        HL_POINT(10) HL_POINT(11) HL_POINT(12) HL_POINT(13)
+    }
+    return s;
+}
+#else
 /* The lights of uniform slot 3: a fixed number, those not needed are black,
- * so that every address is known and the loop unrolls. */
+ * so that the trip count is known when the program is made. */
 hl_sum hl_sum_batch(vec3 p, vec3 n, vec3 v, float exponent)
 {
     hl_sum s = hl_sum(vec3(0.0), vec3(0.0), 0.0);
     for (uint i = 0u; i < hl_spec_batch; i++) {
         if (hl_spec_kinds != 0u) {
             uint k = i * HL_LIGHT_VEC4S;
-            hl_add_light(s, p, n, v, exponent, HL_BATCH_DATA(k),
-                         HL_BATCH_DATA(k + 1u), HL_BATCH_DATA(k + 2u),
-                         HL_BATCH_DATA(k + 3u));
+            hl_add_light(s, p, n, v, exponent, hl_lights.data[k],
+                         hl_lights.data[k + 1u], hl_lights.data[k + 2u],
+                         hl_lights.data[k + 3u]);
         } else {
             uint k = i * HL_POINT_VEC4S;
-            hl_add_light(s, p, n, v, exponent, HL_BATCH_DATA(k),
-                         HL_BATCH_DATA(k + 1u), vec4(0.0), vec4(0.0));
+            hl_add_light(s, p, n, v, exponent, hl_lights.data[k],
+                         hl_lights.data[k + 1u], vec4(0.0), vec4(0.0));
         }
     }
     return s;
 }
+#endif
 
 #ifdef HL_LISTS
 layout(set = 2, binding = HL_SLOT_LIST, std430) readonly buffer hl_list_block {

@@ -143,8 +143,11 @@ void ck_lavapipe(struct hl_caps *c)
         if (kind == HL_KIND_UINT)
             c->format[f].samples = 1;
     }
-    c->cost = (struct hl_cost_model){ 1500.0f, 150.0f, 1.5f, 1.2f, 1.9f,
-                                      2.4f, 8.0f, 0.5f, 15000.0f };
+    c->cost = (struct hl_cost_model){
+        .draw_ns = 1500.0f, .vertex_ns = 150.0f, .pixel_ns = 1.5f,
+        .fetch_ns = 1.2f, .blend_ns = 1.9f, .light_ns = 2.4f,
+        .light_flat_ns = 1.5f, .light_gather_ns = 8.0f, .readback_ns = 0.5f,
+        .sync_ns = 15000.0f };
 }
 
 /* ---- numbers --------------------------------------------------------- */

@@ -51,6 +51,20 @@ struct ck_machine *ck_machine(void **state);
  * text that has `part`. */
 void ck_refused(const struct ck_machine *m, uint32_t before,
                 enum hl_log_id id, const char *part);
+/* A call that gives `result`, logs `id` and names `part`. */
+#define CK_REFUSED(m, call, result, id, part)        \
+    do {                                             \
+        uint32_t errors_ = (m)->errors;              \
+        assert_int_equal(call, result);              \
+        ck_refused(m, errors_, id, part);            \
+    } while (0)
+/* A call that is fine, and says nothing. */
+#define CK_ALLOWED(m, call)                          \
+    do {                                             \
+        uint32_t errors_ = (m)->errors;              \
+        assert_int_equal(call, HL_OK);               \
+        assert_int_equal((m)->errors, errors_);      \
+    } while (0)
 
 /* ---- caps ------------------------------------------------------------ */
 

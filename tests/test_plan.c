@@ -29,9 +29,10 @@ static uint32_t some_count(uint64_t *seed)
 static float some_number(uint64_t *seed)
 {
     static const float odd[] = { 0, 0, 0, 1e-30f, 1, 1e30f, -1, NAN, INFINITY };
-    uint32_t k = mk_below(seed, 8);
-    return k == 0 ? odd[mk_below(seed, 9)] : k == 1
-           ? (float)ck_between(seed, 0, 1000) : (float)ck_between(seed, 0, 2);
+    uint32_t k = mk_below(seed, 40);
+    return k == 0 ? odd[mk_below(seed, 9)] : k < 10 ? 0
+           : k < 20 ? (float)ck_between(seed, 0, 255)
+                    : (float)ck_between(seed, 0, 2);
 }
 
 /* Mostly one of the enum's values, now and then one beyond. */
@@ -84,14 +85,14 @@ static struct hl_caps some_caps(uint64_t *seed)
 {
     struct hl_caps c;
     ck_lavapipe(&c);
-    c.max_tex_dim = 1u << mk_below(seed, 17);
+    c.max_tex_dim = mk_below(seed, 4) ? 16384 : 1u << mk_below(seed, 17);
     c.max_storage_bytes = mk_below(seed, 4) ? 1u << 27 : 0;
     c.samples = mk_below(seed, 16) | 1;
     for (int i = 1; i < HL_FORMAT_COUNT; i++) {
         if (mk_below(seed, 3) == 0)
             c.format[i].use = (uint8_t)mk_below(seed, 16);
         if (mk_below(seed, 3) == 0)
-            c.format[i].samples = (uint8_t)mk_below(seed, 16);
+            c.format[i].samples = (uint8_t)(mk_below(seed, 16) | 1);
     }
     float *cost = &c.cost.draw_ns;
     for (size_t i = 0; i < sizeof c.cost / sizeof *cost; i++)
@@ -222,7 +223,7 @@ static void anything_gives_a_plan_or_a_refusal(void **state)
         }
     }
     print_message("%u plans of 100000\n", made);
-    assert_true(made > 20000);
+    assert_true(made > 10000);
     /* Every refusal was met. */
     for (int i = 1; i < HL_REFUSED_COUNT; i++)
         if (refused[i] == 0)
@@ -232,12 +233,13 @@ static void anything_gives_a_plan_or_a_refusal(void **state)
 /* The same needs with one number raised. */
 static struct hl_needs raised(struct hl_needs n, int what)
 {
+    float a = (float)n.n_lights;
     switch (what) {
     case 0: n.n_lights = n.n_lights * 2 + 1; break;
     case 1: n.n_objects = n.n_objects * 2 + 1; break;
     case 2: n.n_triangles = n.n_triangles * 2 + 1; break;
-    case 3: n.lights_per_pixel *= 1.7f; break;
-    case 4: n.lights_per_object *= 1.7f; break;
+    case 3: n.lights_per_pixel += 0.6f * (a - n.lights_per_pixel); break;
+    case 4: n.lights_per_object += 0.6f * (a - n.lights_per_object); break;
     case 5: n.width += 100; break;
     default: n.height += 64; break;
     }
@@ -258,8 +260,8 @@ static void more_is_never_cheaper(void **state)
         n.n_lights = 1 + mk_below(&seed, 4000);
         n.n_objects = 1 + mk_below(&seed, 4000);
         n.n_triangles = mk_below(&seed, 1000000);
-        n.lights_per_pixel = (float)ck_between(&seed, 0.01, 100);
-        n.lights_per_object = (float)ck_between(&seed, 0.01, 100);
+        n.lights_per_pixel = (float)ck_between(&seed, 0.001, n.n_lights);
+        n.lights_per_object = (float)ck_between(&seed, 0.001, n.n_lights);
         n.light_path = (enum hl_light_path)mk_below(&seed, 4);
         struct hl_needs more = raised(n, (int)(i % 7));
         enum hl_pipeline want = (enum hl_pipeline)mk_below(&seed,
@@ -619,12 +621,13 @@ static void many_blends_need_a_better_frame(void **state)
         assert_int_equal(hl_plan_make(&p, HL_PIPELINE_FORWARD_MULTIPASS, &n,
                                       &c, NULL), HL_OK);
         const struct hl_plan_target *t = hl_plan_target(&p, HL_ROLE_COLOR);
-        bool fine = 106 * hl_accumulation_error(HL_FORMAT_RGBA16_FLOAT,
-                                                lights) <= 0.5f;
+        /* Half a code of 8-bit sRGB, which moves by up to 106 codes a unit
+         * of relative error. */
+        bool fine = 106.0 * (lights + 1) / 2 / 1024 <= 0.5;
         assert_int_equal(t->format, fine ? HL_FORMAT_RGBA16_FLOAT
                                          : HL_FORMAT_RGBA32_FLOAT);
         assert_true(t->error >= last || !fine);
-        last = t->error;
+        last = fine ? t->error : last;
     }
     n.n_lights = 0xffffffff;                     /* no overflow into none    */
     assert_int_equal(hl_plan_make(&p, HL_PIPELINE_FORWARD, &n, &c, NULL),

@@ -403,8 +403,8 @@ static void sparse_accessors_replace_elements(void **state)
         "'VEC3','count':4}", "'VEC3','count':4,'sparse':{'count':1,"
         "'indices':{'bufferView':5,'componentType':5123},"
         "'values':{'bufferView':5,'byteOffset':4}}}",
-        "'byteLength':75}", "'byteLength':75},{'buffer':0,'byteOffset':232,"
-        "'byteLength':16}"};
+        "'byteLength':75}", ("'byteLength':75},{'buffer':0,"
+        "'byteOffset':232,'byteLength':16}")};
     const uint16_t where = 3;
     uint8_t bin[SK_BIN];
     struct hlh_scene s;

@@ -6,6 +6,41 @@
 #include <string.h>
 #include "tests/vulkan_kit.h"
 
+/* ---- barriers ----------------------------------------------------------- */
+
+/* The layers of Vulkan 1.3.239 do not follow attachments of dynamic rendering,
+ * so what happens between passes on one target is looked at by itself. */
+static void every_write_is_waited_for(void **state)
+{
+    struct rig r = vt_rig(state);
+    struct hlvk *v = vt_inside(r.d);
+    struct hlvk_tex t = { .format = HL_FORMAT_RGBA8_UNORM, .mips = 1 };
+    const VkImageMemoryBarrier2 *b = v->barriers;
+    hlvk_tex_use(v, VK_NULL_HANDLE, &t, HLVK_USE_COLOR, false);
+    assert_int_equal(b[0].oldLayout, VK_IMAGE_LAYOUT_UNDEFINED);
+    hlvk_tex_use(v, VK_NULL_HANDLE, &t, HLVK_USE_COLOR, false);
+    assert_int_equal(v->n_barriers, 2);
+    assert_int_equal(b[1].oldLayout, b[0].newLayout);
+    assert_int_equal(b[1].srcAccessMask,
+                     VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT);
+    assert_int_equal(b[1].dstAccessMask,
+                     VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT |
+                     VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT);
+    hlvk_tex_use(v, VK_NULL_HANDLE, &t, HLVK_USE_SAMPLED, false);
+    hlvk_tex_use(v, VK_NULL_HANDLE, &t, HLVK_USE_SAMPLED, false);
+    assert_int_equal(v->n_barriers, 3);
+    assert_int_equal(b[2].srcAccessMask,
+                     VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT);
+    /* Contents may go, but not those of other levels. */
+    hlvk_tex_use(v, VK_NULL_HANDLE, &t, HLVK_USE_COLOR, true);
+    assert_int_equal(b[3].oldLayout, VK_IMAGE_LAYOUT_UNDEFINED);
+    assert_int_not_equal(b[3].srcStageMask, 0);
+    t.mips = 2;
+    hlvk_tex_use(v, VK_NULL_HANDLE, &t, HLVK_USE_COLOR, true);
+    assert_int_equal(b[4].oldLayout, b[3].newLayout);
+    v->n_barriers = 0;
+}
+
 /* ---- order and frames --------------------------------------------------- */
 
 static void writes_and_passes_keep_their_order(void **state)
@@ -45,10 +80,14 @@ static void buffers_that_are_not_mapped_are_copied_to(void **state)
     image got;
     vt_inside(r.d)->bufs[r.uniforms.id & 0xffff]->memory.map = NULL;
     for (int i = 0; i < 3; i++) {
-        float color[4] = { (float)i, 0, 0, 1 };
+        /* Object block and colour: the layers look at a dynamic range as if
+         * its offset were 0. */
+        struct hl_object_block object = vt_object(0.0f);
+        float rows[2][VT_ROW / 4] = { { 0 }, { (float)i, 0, 0, 1 } };
+        memcpy(rows[0], &object, sizeof object);
         out[i] = vt_tex(r.d, HL_FORMAT_RGBA32_FLOAT, VT_SIDE, 1,
-                          HL_TEX_TARGET | HL_TEX_READBACK);
-        assert_int_equal(hl_buf_write(r.d, r.uniforms, VT_ROW, color, 16),
+                        HL_TEX_TARGET | HL_TEX_READBACK);
+        assert_int_equal(hl_buf_write(r.d, r.uniforms, 0, rows, sizeof rows),
                          HL_OK);
         assert_int_equal(vt_run(r.d, out[i], &draw, 1), HL_OK);
     }
@@ -69,7 +108,7 @@ static void two_buffers_in_turn_are_enough(void **state)
     for (int i = 0; i < 10; i++) {
         float color[4] = { (float)i, 0, 0, 1 };
         struct hl_draw draw = vt_draw(&r, prog);
-        draw.uniform[2].buf = turn[i % 2];
+        draw.uniform[HL_SLOT_MATERIAL].buf = turn[i % 2];
         out[i] = vt_tex(r.d, HL_FORMAT_RGBA32_FLOAT, VT_SIDE, 1,
                           HL_TEX_TARGET | HL_TEX_READBACK);
         assert_int_equal(hl_buf_write(r.d, turn[i % 2], VT_ROW, color, 16),
@@ -99,7 +138,7 @@ static void objects_in_use_may_be_destroyed(void **state)
             data[k] = (float)i;
         draw.textures = &bind;
         draw.n_textures = 1;
-        draw.uniform[1].buf = uniforms;
+        draw.uniform[HL_SLOT_OBJECT].buf = uniforms;
         assert_int_equal(hl_tex_write(r.d, t, 0, data, sizeof data), HL_OK);
         assert_int_equal(vt_run(r.d, r.target, &draw, 1), HL_OK);
         if (i % 3 == 0)
@@ -118,7 +157,7 @@ static void objects_in_use_may_be_destroyed(void **state)
 /* More bindings than a cache keeps: it is retired and comes back. */
 static void sets_are_cached_and_the_cache_retired(void **state)
 {
-    enum { N = 3000, FRAMES = 5, BYTES = 16 * (N + 1) };
+    enum { N = 5000, FRAMES = 5, BYTES = 16 * (N + 1) };
     struct rig r = vt_rig(state);
     struct hl_prog_desc p = vt_prog_desc(VT_OWN_COLOR);
     hl_prog prog = vt_prog(r.d, &p);
@@ -134,14 +173,15 @@ static void sets_are_cached_and_the_cache_retired(void **state)
         assert_int_equal(hl_buf_write(r.d, big, 0, color, 16), HL_OK);
         for (uint32_t i = 0; i < N; i++) {
             draws[i] = vt_draw(&r, prog);
-            draws[i].uniform[2] = (struct hl_range){ big, 0, 16 * (i + 1) };
+            draws[i].uniform[HL_SLOT_MATERIAL] =
+                (struct hl_range){ big, 0, 16 * (i + 1) };
             draws[i].scissor = (struct hl_rect){ (int)i % VT_SIDE, 1, 1, 1 };
         }
         assert_int_equal(vt_run(r.d, r.target, draws, N), HL_OK);
         uint32_t sets = v->caches[v->cache].n_sets;
         assert_int_equal(vt_run(r.d, r.target, draws, N), HL_OK);
         assert_int_equal(v->caches[v->cache].n_sets, sets);
-        assert_true(sets >= N && sets < 3 * N);
+        assert_true(sets >= N && sets <= 3 * N);
         assert_int_equal(hl_submit(r.d, false), HL_OK);
         hl_buf_destroy(r.d, &big);
     }
@@ -155,7 +195,7 @@ static void every_pass_has_its_time(void **state)
     enum { N = 600 };        /* more than two query pools hold               */
     struct rig r = vt_rig(state);
     struct hl_timing t[N + 1];
-    static char labels[N][8];
+    static char labels[N][16];
     double sum = 0.0;
     if (!hl_device_caps(r.d)->timestamps)
         skip();
@@ -306,6 +346,7 @@ static void a_lost_device_says_so_from_then_on(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        ON(every_write_is_waited_for),
         ON(writes_and_passes_keep_their_order),
         ON(buffers_that_are_not_mapped_are_copied_to),
         ON(two_buffers_in_turn_are_enough),

@@ -1,13 +1,19 @@
 #version 450
+#extension GL_GOOGLE_include_directive : require
 /* SPDX-License-Identifier: Zlib */
 /* A stage of the Vulkan tests' own: one quantity a draw, by constant 0. */
+#define HL_OWN_MATERIAL_BLOCK
+#include "shaders/shared/block.h"
+
 layout(constant_id = 0) const uint what = 0u;
 layout(constant_id = 1) const float lod = 0.0;
-layout(set = 0, binding = 2) uniform own_block { vec4 color; } own;
+layout(set = 0, binding = HL_SLOT_MATERIAL) uniform own_block {
+    vec4 color;
+} own;
 layout(set = 1, binding = 0) uniform sampler2D image;
 layout(set = 1, binding = 1) uniform sampler2D unbound;
-layout(location = 3) in vec2 v_uv;
-layout(location = 4) in vec4 v_color;
+layout(location = HL_VARY_UV) in vec2 v_uv;
+layout(location = HL_VARY_COLOR) in vec4 v_color;
 layout(location = 0) out vec4 color;
 
 void main()

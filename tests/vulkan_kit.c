@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: Zlib */
 #include <string.h>
 #include "hal/device.h"
+#include "shaders/shared/block.h"
 #include "tests/vulkan_kit.h"
 
 static const uint32_t frag_spirv[] = {
 #include "vulkan_frag.x"
 };
-
-enum { OBJECT_BYTES = 208 };
 
 const struct vertex vt_quad[6] = {
     { { -1, -1, 0.5f }, { 0, 0 } }, { { -1, 1, 0.5f }, { 0, 1 } },
@@ -20,8 +19,8 @@ struct hlvk *vt_inside(struct hl_device *d)
     return d->state;
 }
 
-hl_tex vt_tex(struct hl_device *d, enum hl_format format,
-                       uint32_t side, uint32_t samples, uint32_t usage)
+hl_tex vt_tex(struct hl_device *d, enum hl_format format, uint32_t side,
+              uint32_t samples, uint32_t usage)
 {
     struct hl_tex_desc desc = { .format = format, .width = side,
                                 .height = side, .samples = samples,
@@ -31,22 +30,28 @@ hl_tex vt_tex(struct hl_device *d, enum hl_format format,
     return t;
 }
 
-/* Row 0 of the uniforms: an object block of identities, ids 7; then rows of
- * colours, row i red i / 8. */
+struct hl_object_block vt_object(float move_x)
+{
+    struct hl_object_block o;
+    memset(&o, 0, sizeof o);
+    o.clip.column[0].x = o.clip.column[1].y = o.clip.column[2].z = 1.0f;
+    o.clip.column[3] = (hl_vec4){ move_x, 0.0f, 0.0f, 1.0f };
+    o.ids.x = 7.0f;
+    return o;
+}
+
 hl_buf vt_uniforms(struct hl_device *d)
 {
-    static float rows[9][VT_ROW / 4];
+    unsigned char rows[9][VT_ROW] = { { 0 } };
     struct hl_buf_desc desc = { .bytes = sizeof rows, .dynamic = true,
                                 .usage = HL_BUF_UNIFORM, .data = rows };
+    struct hl_object_block object = vt_object(0.0f);
     hl_buf b;
-    memset(rows, 0, sizeof rows);
-    for (int i = 0; i < 48; i++)
-        rows[0][i] = i % 16 % 5 == 0 ? 1.0f : 0.0f;
-    rows[0][48] = 7.0f;
+    assert_true(sizeof object <= VT_ROW);
+    memcpy(rows[0], &object, sizeof object);
     for (int i = 1; i < 9; i++) {
-        rows[i][0] = (float)i / 8.0f;
-        rows[i][1] = 0.25f;
-        rows[i][3] = 1.0f;
+        const float color[4] = { (float)i / 8.0f, 0.25f, 0.0f, 1.0f };
+        memcpy(rows[i], color, sizeof color);
     }
     assert_int_equal(hl_buf_create(d, &b, &desc), HL_OK);
     return b;
@@ -59,7 +64,7 @@ struct rig vt_rig_on(struct hl_device *d)
     assert_int_equal(hl_buf_create(d, &r.mesh, &mesh), HL_OK);
     r.uniforms = vt_uniforms(d);
     r.target = vt_tex(d, HL_FORMAT_RGBA32_FLOAT, VT_SIDE, 1,
-                        HL_TEX_TARGET | HL_TEX_READBACK | HL_TEX_SAMPLED);
+                      HL_TEX_TARGET | HL_TEX_READBACK | HL_TEX_SAMPLED);
     return r;
 }
 
@@ -76,14 +81,14 @@ struct hl_prog_desc vt_prog_desc(uint32_t what)
     static const struct hl_code code = { frag_spirv, sizeof frag_spirv, NULL,
                                          NULL };
     struct hl_prog_desc p = {
-        .vertex = { HL_SHADER_MESH_FULL_VERT, NULL },
+        .vertex = { HL_SHADER_MESH_OWN_VERT, NULL },
         .fragment = { HL_SHADER_NONE, &code },
         .spec = { { 0, what } }, .n_specs = 1,
         .layout = { .stride = { sizeof(struct vertex) } },
         .n_colors = 1, .color = { HL_FORMAT_RGBA32_FLOAT }
     };
-    p.layout.attr[0] = (struct hl_attr){ HL_ATTR_F32X3, 0, 0 };
-    p.layout.attr[3] = (struct hl_attr){ HL_ATTR_F32X2, 0, 12 };
+    p.layout.attr[HL_ATTR_POSITION] = (struct hl_attr){ HL_ATTR_F32X3, 0, 0 };
+    p.layout.attr[HL_ATTR_UV] = (struct hl_attr){ HL_ATTR_F32X2, 0, 12 };
     return p;
 }
 
@@ -98,13 +103,16 @@ struct hl_draw vt_draw(const struct rig *r, hl_prog prog)
 {
     return (struct hl_draw){
         .prog = prog, .vertex = { r->mesh }, .count = 6,
-        .uniform = { [1] = { r->uniforms, 0, OBJECT_BYTES },
-                     [2] = { r->uniforms, VT_ROW, 16 } }
+        .uniform = {
+            [HL_SLOT_OBJECT] = { r->uniforms, 0,
+                                 sizeof(struct hl_object_block) },
+            [HL_SLOT_MATERIAL] = { r->uniforms, VT_ROW, 16 }
+        }
     };
 }
 
 enum hl_result vt_run(struct hl_device *d, hl_tex target,
-                          const struct hl_draw *draws, uint32_t n)
+                      const struct hl_draw *draws, uint32_t n)
 {
     struct hl_pass pass = { .label = "test", .n_colors = 1, .draws = draws,
                             .n_draws = n };
@@ -119,7 +127,7 @@ void vt_read(const struct rig *r, image out)
 }
 
 void vt_draw_one(const struct rig *r, const struct hl_prog_desc *p,
-                     const struct hl_texture_binding *tex, image out)
+                 const struct hl_texture_binding *tex, image out)
 {
     struct hl_draw draw = vt_draw(r, vt_prog(r->d, p));
     draw.textures = tex;

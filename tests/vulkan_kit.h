@@ -4,6 +4,7 @@
 /* What the tests of the Vulkan backend share: a device with a quad, uniforms
  * and a target, a stage of their own, and the backend's inside. */
 #include "platforms/vulkan/vk.h"
+#include "shaders/shared/block.h"
 #include "tests/check.h"
 
 enum { VT_SIDE = 8, VT_ROW = 256 };
@@ -34,8 +35,10 @@ struct hlvk *vt_inside(struct hl_device *d);
 
 hl_tex vt_tex(struct hl_device *d, enum hl_format format, uint32_t side,
               uint32_t samples, uint32_t usage);
-/* Row 0: an object block of identities, id base 7; row i, VT_ROW bytes each,
- * the colour i / 8, 1 / 4, 0, 1. */
+/* Identities, moved to the right by move_x of clip space; id base 7. */
+struct hl_object_block vt_object(float move_x);
+/* Row 0: that object block, unmoved; row i of 8, VT_ROW bytes each, the
+ * colour i / 8, 1 / 4, 0, 1. */
 hl_buf vt_uniforms(struct hl_device *d);
 /* The quad's layout, a quantity, RGBA32_FLOAT. */
 struct hl_prog_desc vt_prog_desc(uint32_t what);

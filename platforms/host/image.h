@@ -23,7 +23,8 @@ bool hlh_picture_write_png(const struct hlh_picture *picture, double exposure,
 /* PFM, little endian, linear, bottom row first as the format says. */
 bool hlh_picture_write_pfm(const struct hlh_picture *picture,
                            const char *path, struct hlh_error *error);
-/* 16-bit grey PNG of ids (uint16) or, ids > 65535, 8-bit RGBA of uint32. */
+/* 16-bit grey PNG of ids (uint16) or, ids > 65535, 8-bit RGBA of uint32, r
+ * its lowest byte, a its highest. */
 bool hlh_ids_write_png(const uint32_t *ids, uint32_t width, uint32_t height,
                        const char *path, struct hlh_error *error);
 bool hlh_ids_read_png(uint32_t **ids, uint32_t *width, uint32_t *height,
