@@ -22,6 +22,9 @@ static enum hl_result take_target(struct hl_device *d, struct hl_bk_pass *p,
     out->load = t->load;
     out->discard = t->discard;
     memcpy(out->clear, t->clear, sizeof out->clear);
+    if ((unsigned)t->load > HL_LOAD_DISCARD)
+        return hl_refuse(d, HL_ERR_INVALID, HL_MSG_ARGUMENT, "hl_target.load",
+                         "not one of its enum");
     if (out->slot == HL_NO_SLOT)
         return hl_refuse(d, HL_ERR_INVALID, HL_MSG_HANDLE, "hl_pass target",
                          "not a live texture");
@@ -53,6 +56,20 @@ static enum hl_result take_target(struct hl_device *d, struct hl_bk_pass *p,
     return HL_OK;
 }
 
+/* Is colour i, or what it resolves to, written by an earlier one? */
+static bool twice(const struct hl_bk_pass *p, uint32_t i)
+{
+    const struct hl_bk_target *t = &p->color[i];
+    for (uint32_t k = 0; k < i; k++) {
+        const struct hl_bk_target *u = &p->color[k];
+        if (t->slot == u->slot || t->slot == u->resolve ||
+            (t->resolve != HL_NO_SLOT &&
+             (t->resolve == u->slot || t->resolve == u->resolve)))
+            return true;
+    }
+    return false;
+}
+
 static enum hl_result take_targets(struct hl_device *d, struct hl_bk_pass *o,
                                    const struct hl_pass *p)
 {
@@ -69,9 +86,17 @@ static enum hl_result take_targets(struct hl_device *d, struct hl_bk_pass *o,
     for (uint32_t i = 0; i < p->n_colors; i++) {
         enum hl_result r = take_target(d, o, &o->color[i], &p->color[i],
                                        false);
+        if (r == HL_OK && twice(o, i))
+            r = hl_refuse_number(d, HL_ERR_INVALID, HL_MSG_ARGUMENT,
+                                 "hl_pass.color", i,
+                                 " is a target of this pass already");
         if (r != HL_OK)
             return r;
     }
+    if (p->depth.tex.id != 0 && p->depth_read_only &&
+        p->depth.load != HL_LOAD_KEEP)
+        return hl_refuse(d, HL_ERR_INVALID, HL_MSG_ARGUMENT, "hl_pass.depth",
+                         "read only, but not kept");
     if (p->depth.tex.id != 0)
         return take_target(d, o, &o->depth, &p->depth, true);
     if (p->n_colors == 0)

@@ -408,7 +408,7 @@ static void program_stages_are_checked(void **state)
     PROG_BAD(fragment.builtin, (enum hl_shader)-1, HL_ERR_INVALID,
              HL_MSG_ARGUMENT, "no such built-in");
     PROG_BAD(n_specs, HL_MAX_SPECS + 1, HL_ERR_INVALID, HL_MSG_ARGUMENT,
-             "n_specs: 17");
+             "hl_prog_desc.n_specs");
     /* Depth alone needs no fragment stage. */
     p.fragment.builtin = HL_SHADER_NONE;
     p.n_colors = 0;

@@ -157,7 +157,7 @@ static void objects_in_use_may_be_destroyed(void **state)
 /* More bindings than a cache keeps: it is retired and comes back. */
 static void sets_are_cached_and_the_cache_retired(void **state)
 {
-    enum { N = 5000, FRAMES = 5, BYTES = 16 * (N + 1) };
+    enum { N = 5000, FRAMES = 5, BYTES = 16 + 3 * N };
     struct rig r = vt_rig(state);
     struct hl_prog_desc p = vt_prog_desc(VT_OWN_COLOR);
     hl_prog prog = vt_prog(r.d, &p);
@@ -174,7 +174,7 @@ static void sets_are_cached_and_the_cache_retired(void **state)
         for (uint32_t i = 0; i < N; i++) {
             draws[i] = vt_draw(&r, prog);
             draws[i].uniform[HL_SLOT_MATERIAL] =
-                (struct hl_range){ big, 0, 16 * (i + 1) };
+                (struct hl_range){ big, 0, 16 + 3 * i };
             draws[i].scissor = (struct hl_rect){ (int)i % VT_SIDE, 1, 1, 1 };
         }
         assert_int_equal(vt_run(r.d, r.target, draws, N), HL_OK);

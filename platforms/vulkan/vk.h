@@ -146,7 +146,7 @@ struct hlvk_set {
     uint32_t kind, hash;
 };
 /* Sets by content. They stay valid from frame to frame; a cache that has
- * grown large is set aside until its frames are done, and begun anew. */
+ * grown large is set aside and, a frame later at the earliest, begun anew. */
 struct hlvk_cache {
     VkDescriptorPool *pools; /* filled in order, the same number of sets each */
     uint32_t n_pools, max_pools;
@@ -154,7 +154,6 @@ struct hlvk_cache {
     uint32_t n_sets, max_sets;
     uint32_t *table;         /* index + 1 into sets, open addressing; 0 none */
     uint32_t table_size;     /* power of two, at least twice n_sets          */
-    uint64_t frame;          /* last serial that used it, when set aside     */
 };
 
 /* ---- device ---------------------------------------------------------- */

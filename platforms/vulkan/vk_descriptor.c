@@ -233,19 +233,20 @@ enum hl_result hlvk_set_find(struct hlvk *v, uint32_t kind,
     return HL_OK;
 }
 
+/* Called as a frame begins. The other cache was set aside as an earlier one
+ * began, so that it was last used two frames ago or more, and a frame begins
+ * only when the one two before it is done. */
 void hlvk_sets_frame(struct hlvk *v)
 {
-    struct hlvk_cache *old = &v->caches[v->cache];
-    struct hlvk_cache *fresh = &v->caches[v->cache ^ 1];
-    if (old->n_sets < CACHE_SETS || fresh->frame > v->completed)
+    if (v->caches[v->cache].n_sets < CACHE_SETS)
         return;
-    old->frame = v->serial;
-    for (uint32_t i = 0; i < fresh->n_pools; i++)
-        vkResetDescriptorPool(v->vk, fresh->pools[i], 0);
-    if (fresh->table)
-        memset(fresh->table, 0, fresh->table_size * sizeof *fresh->table);
-    fresh->n_sets = 0;
     v->cache ^= 1;
+    struct hlvk_cache *c = &v->caches[v->cache];
+    for (uint32_t i = 0; i < c->n_pools; i++)
+        vkResetDescriptorPool(v->vk, c->pools[i], 0);
+    if (c->table)
+        memset(c->table, 0, c->table_size * sizeof *c->table);
+    c->n_sets = 0;
 }
 
 /* ---- open and close ---------------------------------------------------- */
