@@ -104,6 +104,8 @@ test: deps
 	@sh tests/run.sh $(B)
 check: all
 	@sh tests/check.sh $(B)
+bench: all
+	@sh tests/bench.sh $(B)/halflight fig8
 clean:
 	rm -rf build
 

@@ -117,8 +117,9 @@ static void every_allocation_may_fail(void **state)
     }
     print_message("%zu allocations, %zu could fail unnoticed\n", n, survived);
     assert_true(n >= 10);
-    /* Few calls have a way around missing memory. */
-    assert_true(survived <= n / 4);
+    /* Some have a way around it (a segment that is not split, another memory
+     * type), most do not. */
+    assert_true(survived <= n / 3);
     assert_true(starved(backend, n + 1, false, &unused));
 }
 

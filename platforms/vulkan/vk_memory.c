@@ -258,8 +258,10 @@ enum hl_result hlvk_buf_make(struct hlvk *v, VkDeviceSize bytes,
         r = hlvk_check(v, vkBindBufferMemory(v->vk, *out, memory->memory,
                                              memory->offset),
                        "vkBindBufferMemory");
-    if (r)
+    if (r) {
         hlvk_buf_unmake(v, *out, memory);
+        *out = VK_NULL_HANDLE;
+    }
     return r;
 }
 
