@@ -176,20 +176,50 @@ static void draw_batch(struct hl_renderer *r, const struct hl_frame *f,
     r->stats.blends += add;
 }
 
+/* Lights of one draw: part `chunk` of tile t's list; 0 when there is none. */
+static uint32_t chunk_of(const struct hl_renderer *r, uint32_t t,
+                         uint32_t chunk, uint32_t *at)
+{
+    uint32_t first = r->tile_first[t], n = r->tile_first[t + 1] - first;
+    uint32_t done = chunk * r->plan.batch;
+    *at = first + done;
+    if (done >= n)
+        return 0;
+    return n - done < r->plan.batch ? n - done : r->plan.batch;
+}
+
+/* The tiles whose chunk is drawn by one program: changing programs costs
+ * more than a tile's draw. Returns how many draws were made. */
+static uint32_t draw_chunks(struct hl_renderer *r, const struct hl_frame *f,
+                            uint32_t chunk, uint32_t size)
+{
+    const struct hl_tile_grid *g = &r->grid;
+    uint32_t at, fits, drawn = 0;
+    for (uint32_t t = 0; t < g->nx * g->ny; t++) {
+        uint32_t n = chunk_of(r, t, chunk, &at);
+        if (n == 0)
+            continue;
+        hl_light_program(r, n, chunk > 0, &fits);
+        if (fits != size)
+            continue;
+        struct hl_rect rect = { (int32_t)(t % g->nx * g->tile),
+                                (int32_t)(t / g->nx * g->tile),
+                                (int32_t)g->tile, (int32_t)g->tile };
+        draw_batch(r, f, &rect, r->refs + at, n, chunk > 0);
+        drawn++;
+    }
+    return drawn;
+}
+
 /* The first draw of a tile writes over the cleared target without blending:
  * most tiles have no second one. */
 static void draw_tiles(struct hl_renderer *r, const struct hl_frame *f)
 {
-    const struct hl_tile_grid *g = &r->grid;
-    for (uint32_t t = 0; t < g->nx * g->ny; t++) {
-        uint32_t first = r->tile_first[t], n = r->tile_first[t + 1] - first;
-        struct hl_rect rect = { (int32_t)(t % g->nx * g->tile),
-                                (int32_t)(t / g->nx * g->tile),
-                                (int32_t)g->tile, (int32_t)g->tile };
-        for (uint32_t i = 0; i < n; i += r->plan.batch) {
-            uint32_t k = n - i < r->plan.batch ? n - i : r->plan.batch;
-            draw_batch(r, f, &rect, r->refs + first + i, k, i > 0);
-        }
+    uint32_t drawn = 1;
+    for (uint32_t chunk = 0; drawn > 0; chunk++) {
+        drawn = 0;
+        for (uint32_t i = 0; i < LIGHT_SIZES; i++)
+            drawn += draw_chunks(r, f, chunk, hl_light_size(&r->plan, i));
     }
 }
 

@@ -227,11 +227,15 @@ static void put_material(struct hl_renderer *r, const struct hl_item *it,
 
 /* ---- culling ------------------------------------------------------------ */
 
-/* Shell sort, nearest first (or farthest): in place, no recursion, and equal
- * depths fall back to the item order, so that a frame is deterministic. */
+/* Shell sort, by surface and nearest first (or, blended, farthest first): in
+ * place, no recursion, and equal depths fall back to the item order, so that
+ * a frame is deterministic. By surface, since a change of program costs a
+ * software device as much as thousands of pixels. */
 static bool before(const struct hl_visible *a, const struct hl_visible *b,
                    bool far_first)
 {
+    if (!far_first && a->surface != b->surface)
+        return a->surface < b->surface;
     if (a->z != b->z)
         return far_first ? a->z > b->z : a->z < b->z;
     return a->item < b->item;
@@ -263,6 +267,7 @@ static uint32_t cull(struct hl_renderer *r, const struct hl_frame *f,
             continue;
         memset(v, 0, sizeof *v);
         v->item = i;
+        v->surface = it->surface;
         v->box = hl_box_world(it->world, it->bounds_min, it->bounds_max);
         if (!hl_box_visible(&v->box, &f->camera, aspect, &v->z))
             continue;

@@ -302,7 +302,7 @@ enum hl_result hl_screen_program(struct hl_renderer *r,
 }
 
 /* Quarters of the largest batch for tiles; RECTS has its one size. */
-static uint32_t light_size(const struct hl_plan *p, uint32_t i)
+uint32_t hl_light_size(const struct hl_plan *p, uint32_t i)
 {
     return p->light_path == HL_LIGHT_PATH_RECTS
            ? p->batch : (p->batch * (i + 1) + 3) / LIGHT_SIZES;
@@ -313,9 +313,9 @@ hl_prog hl_light_program(struct hl_renderer *r, uint32_t lights, bool add,
 {
     uint32_t i = 0;
     if (r->plan.light_path != HL_LIGHT_PATH_RECTS)
-        while (i < LIGHT_SIZES - 1 && light_size(&r->plan, i) < lights)
+        while (i < LIGHT_SIZES - 1 && hl_light_size(&r->plan, i) < lights)
             i++;
-    *size = light_size(&r->plan, i);
+    *size = hl_light_size(&r->plan, i);
     return r->counting ? r->count_prog : r->light_prog[i][add];
 }
 
@@ -332,7 +332,7 @@ static enum hl_result make_light_programs(struct hl_renderer *r)
             enum hl_result e = hl_screen_program(
                 r, p->light_flat ? HL_SHADER_LIGHT_FLAT_FRAG
                                  : HL_SHADER_LIGHT_BATCH_FRAG, f,
-                add ? HL_BLEND_ADD : HL_BLEND_OFF, light_size(p, i),
+                add ? HL_BLEND_ADD : HL_BLEND_OFF, hl_light_size(p, i),
                 &r->light_prog[i][add]);
             if (e != HL_OK)
                 return e;

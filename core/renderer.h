@@ -26,7 +26,7 @@ struct hl_arena {
 enum { FRAMES = 3 };
 
 struct hl_visible {
-    uint32_t item;
+    uint32_t item, surface;
     float z;                 /* nearest depth of its box                     */
     struct hl_box box;
     uint32_t object, material, material_bytes; /* offsets in the arena       */
@@ -69,6 +69,8 @@ struct hl_renderer {
 };
 
 /* frame_setup.c */
+/* Lights of size class i. */
+uint32_t hl_light_size(const struct hl_plan *, uint32_t i);
 hl_prog hl_light_program(struct hl_renderer *, uint32_t lights, bool add,
                          uint32_t *size);
 enum hl_result hl_surface_program(struct hl_renderer *, uint32_t surface,

@@ -20,6 +20,7 @@ struct hl_prog_state {
     enum hl_format color[HL_MAX_COLORS];
     enum hl_format depth;
     uint32_t n_colors, samples;
+    uint32_t streams;        /* bits: streams that the layout reads          */
     bool depth_write;
 };
 

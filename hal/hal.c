@@ -653,6 +653,10 @@ enum hl_result hl_prog_create(struct hl_device *d, hl_prog *out,
     s->depth = p.depth;
     s->samples = p.samples;
     s->depth_write = p.depth_write;
+    s->streams = 0;
+    for (int i = 0; i < HL_MAX_ATTRS; i++)
+        if (p.layout.attr[i].format != HL_ATTR_NONE)
+            s->streams |= 1u << p.layout.attr[i].stream;
     out->id = pool_commit(pool, slot);
     return HL_OK;
 }

@@ -187,6 +187,9 @@ static const char *take_textures(struct hl_device *d, struct hl_bk_draw *o,
         if (t->slot == HL_NO_SLOT ||
             !(d->texs[t->slot].usage & HL_TEX_SAMPLED))
             return ": a texture is stale or not made to be sampled";
+        if (b->filter != HL_FILTER_NEAREST &&
+            !(d->caps.format[d->texs[t->slot].sample_as].use & HL_USE_LINEAR))
+            return ": filters a format that this device only fetches";
         if (is_target(p, t->slot))
             return ": samples a target of its own pass";
     }
@@ -203,6 +206,8 @@ static const char *take_geometry(struct hl_device *d, struct hl_bk_draw *o,
             (o->vertex[i] == HL_NO_SLOT ||
              !(d->bufs[o->vertex[i]].usage & HL_BUF_VERTEX)))
             return ": a vertex buffer is stale or not one";
+        if (w->vertex[i].id == 0 && (d->progs[o->prog].streams >> i & 1))
+            return ": the program's layout reads a stream that is not bound";
     }
     o->index = hl_pool_find(pool, w->index.id);
     o->index16 = w->index16;
