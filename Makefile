@@ -8,9 +8,11 @@ ifeq ($(origin CC),default)
 CC := gcc
 endif
 AR ?= ar
-PYTHON ?= python3
 B := build/$(config)
 GEN := build/gen
+# V=1 prints commands whole.
+Q := $(if $(V),,@)
+JOBS := -j$(shell nproc 2>/dev/null || echo 1)
 
 # -ffp-contract=off: a*b+c is two roundings everywhere, so that core's numbers
 # are the same on every compiler; errno and traps are never read.
@@ -57,23 +59,28 @@ $(call lib,halflight-cli): $(CLI_LIB)
 $(call lib,halflight-list): $(LIST)
 %.a:
 	@mkdir -p $(@D); rm -f $@
-	$(AR) rcs $@ $^
+	@echo "  AR   $@"
+	$(Q)$(AR) rcs $@ $^
 
 $(B)/halflight: $(B)/obj/platforms/cli/main.o $(TOOL_LIBS)
-	$(CC) $(ALL_LDFLAGS) -o $@ $^ $(VULKAN_LIBS) $(HOST_LIBS)
+	@echo "  LINK $@"
+	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(VULKAN_LIBS) $(HOST_LIBS)
 
 $(B)/obj/platforms/host/%.o $(B)/obj/platforms/cli/%.o $(B)/obj/platforms/reference/%.o $(B)/obj/tests/%.o: EXTRA := $(HOST_CFLAGS)
 $(B)/obj/%.o: %.c
 	@mkdir -p $(@D)
-	$(CC) $(ALL_CFLAGS) $(EXTRA) -MMD -MP -c -o $@ $<
+	@echo "  CC   $<"
+	$(Q)$(CC) $(ALL_CFLAGS) $(EXTRA) -MMD -MP -c -o $@ $<
 $(B)/obj/gen/%.o: $(GEN)/%.c
 	@mkdir -p $(@D)
-	$(CC) $(ALL_CFLAGS) -MMD -MP -c -o $@ $<
+	@echo "  CC   $<"
+	$(Q)$(CC) $(ALL_CFLAGS) -MMD -MP -c -o $@ $<
 
 # Shaders: one SPIR-V blob a row of shaders/variants.def, embedded as C.
 $(GEN)/hl_spirv.c: shaders/embed.sh shaders/variants.def $(wildcard shaders/*.vert shaders/*.frag shaders/*.glsl shaders/shared/*.h)
 	@mkdir -p $(GEN)
-	sh shaders/embed.sh spirv $@
+	@echo "  GLSL $@"
+	$(Q)sh shaders/embed.sh spirv $@
 $(VULKAN): | $(GEN)/hl_spirv.c
 
 # Tests: every tests/test_*.c is a cmocka program over all libraries.
@@ -82,25 +89,29 @@ TEST_LIB := $(filter-out $(B)/obj/tests/test_% $(B)/obj/tests/embed.o,$(call obj
 tests: $(TESTS)
 $(B)/tests/%: $(B)/obj/tests/%.o $(TEST_LIB) $(TOOL_LIBS)
 	@mkdir -p $(@D)
-	$(CC) $(ALL_LDFLAGS) -o $@ $^ -lcmocka $(VULKAN_LIBS) $(HOST_LIBS) -ldl
+	@echo "  LINK $@"
+	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ -lcmocka $(VULKAN_LIBS) $(HOST_LIBS) -ldl
 # Stages of the tests' own, compiled as an engine would: tests/NAME.frag is
 # included as NAME_frag.x.
 TEST_STAGES := $(patsubst tests/%.frag,$(GEN)/%_frag.x,$(wildcard tests/*.frag))
 $(GEN)/%_frag.x: tests/%.frag $(wildcard shaders/*.glsl shaders/shared/*.h)
 	@mkdir -p $(GEN)
-	glslangValidator -V -g0 --target-env vulkan1.1 -Ishaders -I. -x -o $@ $< >/dev/null
+	@echo "  GLSL $@"
+	$(Q)glslangValidator -V -g0 --target-env vulkan1.1 -Ishaders -I. -x -o $@ $< > $@.log || \
+	    { cat $@.log; rm -f $@; exit 1; }
 $(call objs,tests/*.c): | $(TEST_STAGES)
 $(B)/tests/embed: $(B)/obj/tests/embed.o $(LIBS)
 	@mkdir -p $(@D)
-	$(CC) $(ALL_LDFLAGS) -o $@ $< $(call lib,halflight-vulkan) $(call lib,halflight) $(VULKAN_LIBS) -lm
+	@echo "  LINK $@"
+	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $< $(call lib,halflight-vulkan) $(call lib,halflight) $(VULKAN_LIBS) -lm
 
 deps:
 	@sh .ci/deps
 run: deps
-	@$(MAKE) --no-print-directory all
+	@$(MAKE) $(JOBS) --no-print-directory all
 	@sh .ci/demo $(B)/halflight build/demo
 test: deps
-	@$(MAKE) --no-print-directory all tests
+	@$(MAKE) $(JOBS) --no-print-directory all tests
 	@sh tests/run.sh $(B)
 check: all
 	@sh tests/check.sh $(B)

@@ -477,6 +477,14 @@ static void shading_passes(struct hl_renderer *r, const struct hl_frame *f)
     hl_pass_end(r);
 }
 
+static void note_peak(struct hl_renderer *r)
+{
+    bool wide = r->plan.light_bits == HL_BITS_FLOAT;
+    float most = r->plan.light_bits == HL_BITS_HALF ? HL_HALF_MAX
+                                                    : r->plan.light_scale;
+    r->stats.light_may_clip = !wide && r->stats.light_peak > most;
+}
+
 enum hl_result hl_frame_draw(struct hl_renderer *r, const struct hl_frame *f,
                              struct hl_frame_stats *stats)
 {
@@ -490,6 +498,7 @@ enum hl_result hl_frame_draw(struct hl_renderer *r, const struct hl_frame *f,
         light_pass(r, f);
     }
     shading_passes(r, f);
+    note_peak(r);
     if (stats)
         *stats = r->stats;
     return r->result;

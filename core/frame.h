@@ -38,6 +38,10 @@ struct hl_frame_stats {
     uint32_t draws, blends;            /* blends: draws that blend           */
     uint32_t light_refs;               /* entries of all light lists         */
     float light_peak;                  /* bound of summed light, inferred    */
+    bool light_may_clip;               /* the peak is above what the L-buffer
+                                        * of the plan holds (plan.light_scale,
+                                        * 65,504 for 16-bit floats): plan
+                                        * again with a larger needs.peak     */
 };
 
 /* Record the frame's passes; the caller submits. Lights and camera are

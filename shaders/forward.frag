@@ -31,5 +31,5 @@ void main()
         c += s.albedo * l.diffuse + s.specular * l.specular;
     }
 #endif
-    out_color = vec4(c, s.alpha);
+    out_color = vec4(min(c, vec3(HL_HALF_MAX)), s.alpha);
 }

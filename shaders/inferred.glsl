@@ -67,7 +67,8 @@ vec4 hl_accept_taps(hl_taps t, vec4 ids)
 vec4 hl_unpack_light(uvec4 w)
 {
     if (hl_spec_light_bits == uint(HL_BITS_HALF))
-        return vec4(unpackHalf2x16(w.x), unpackHalf2x16(w.y));
+        return min(vec4(unpackHalf2x16(w.x), unpackHalf2x16(w.y)),
+                   vec4(HL_HALF_MAX));
     if (hl_spec_light_bits == uint(HL_BITS_UNORM16))
         return vec4(unpackUnorm2x16(w.x), unpackUnorm2x16(w.y));
     if (hl_spec_light_bits == uint(HL_BITS_FLOAT))

@@ -56,5 +56,6 @@ void main()
 #else
     hl_sum s = hl_sum_batch(p, n, v, exponent);
 #endif
-    out_light = vec4(s.diffuse, s.intensity) / hl_spec_scale;
+    out_light = min(vec4(s.diffuse, s.intensity) / hl_spec_scale,
+                    vec4(HL_HALF_MAX));
 }

@@ -12,6 +12,6 @@ void main()
 {
     hl_surface s = hl_read_surface();
     hl_lit l = hl_read_lights(v_ids);
-    out_color = vec4(s.base + s.albedo * l.diffuse + s.specular * l.specular,
-                     s.alpha);
+    vec3 c = s.base + s.albedo * l.diffuse + s.specular * l.specular;
+    out_color = vec4(min(c, vec3(HL_HALF_MAX)), s.alpha);
 }

@@ -62,6 +62,9 @@
 
 /* L-buffers are sampled as raw bits (R32, RG32 or RGBA32 UINT), since one
  * gather of 32-bit words costs less than four fetches of texels. */
+/* Largest 16-bit float. Brighter light is stored as this, not as infinity,
+ * which a blender or a division would turn into NaN. */
+#define HL_HALF_MAX 65504.0f
 #define HL_BITS_HALF 0      /* 4 x 16 float                                  */
 #define HL_BITS_UNORM16 1
 #define HL_BITS_FLOAT 2     /* 4 x 32 float                                  */
