@@ -31,6 +31,15 @@ const char *hl_light_check(const struct hl_light *l)
     return NULL;
 }
 
+float hl_light_peak(const struct hl_light *l)
+{
+    float c = l->color[0] > l->color[1] ? l->color[0] : l->color[1];
+    c = c > l->color[2] ? c : l->color[2];
+    /* Inverse square: 1 / 0.01^2 at the centre. */
+    return l->kind != HL_DIRECTIONAL && l->falloff == HL_INVERSE_SQUARE
+           ? c * 1e4f : c;
+}
+
 /* Slopes of the two tangents from the origin to a circle of radius r at
  * (c, z), z > r: the tangent points' directions turned by asin(r / d). */
 static void tangents(float c, float z, float r, float *low, float *high)
@@ -139,19 +148,14 @@ struct hl_box hl_box_world(const float m[16], const float min[3],
     return b;
 }
 
-static float outside(float c, float low, float high)
-{
-    return c < low ? low - c : c > high ? c - high : 0.0f;
-}
-
 bool hl_sphere_touches_box(const struct hl_lit_sphere *s,
                            const struct hl_box *b)
 {
     if (s->radius < 0)
         return true;
-    float x = outside(s->world.x, b->min.x, b->max.x);
-    float y = outside(s->world.y, b->min.y, b->max.y);
-    float z = outside(s->world.z, b->min.z, b->max.z);
+    float x = hl_outside(s->world.x, b->min.x, b->max.x);
+    float y = hl_outside(s->world.y, b->min.y, b->max.y);
+    float z = hl_outside(s->world.z, b->min.z, b->max.z);
     return x * x + y * y + z * z < s->radius * s->radius;
 }
 

@@ -21,6 +21,9 @@ struct hl_box { hl_vec3 min, max; };
 /* First broken rule of a light, NULL when it is good: "radius", "color"... */
 const char *hl_light_check(const struct hl_light *);
 
+/* Most that a light can add to a channel of D or S at any point. */
+float hl_light_peak(const struct hl_light *);
+
 /* Lights that can add anything to what the camera sees, in input order.
  * aspect = width / height. Returns how many were written to out (at most
  * n_lights). */

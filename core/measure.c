@@ -10,14 +10,6 @@
  * every light whose bounds touch it, at full strength. */
 enum { CELLS_X = 16, CELLS_Y = 9 };
 
-static float largest(const struct hl_light *l)
-{
-    float c = l->color[0] > l->color[1] ? l->color[0] : l->color[1];
-    c = c > l->color[2] ? c : l->color[2];
-    return l->kind != HL_DIRECTIONAL && l->falloff == HL_INVERSE_SQUARE
-           ? c * 1e4f : c;      /* 1 / 0.01^2 at its centre                  */
-}
-
 static void add_cells(float *cell, const struct hl_rect *b, float x)
 {
     for (int32_t y = b->y; y < b->y + b->height; y++)
@@ -51,7 +43,7 @@ static void measure_lights(struct hl_needs *n, const struct hl_frame *f,
                                               1);
         /* pi / 4: a sphere's outline in its rectangle. */
         area += 0.785 * fine.width * fine.height / (w * h);
-        add_cells(cell, &b, largest(l));
+        add_cells(cell, &b, hl_light_peak(l));
     }
     n->lights_per_pixel = (float)area;
     n->peak = 0;

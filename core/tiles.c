@@ -24,11 +24,6 @@ static struct span sphere_span(const struct hl_tile_grid *g,
     return p;
 }
 
-static float outside(float c, float low, float high)
-{
-    return c < low ? low - c : c > high ? c - high : 0.0f;
-}
-
 /* Slopes of a tile's left and right (or upper and lower) edges. */
 static void tile_slopes(const struct hl_tile_grid *g, uint32_t tx, uint32_t ty,
                         float x[2], float y[2])
@@ -59,9 +54,9 @@ static bool reaches(const struct hl_tile_grid *g,
     tile_slopes(g, tx, ty, x, y);
     float x0 = x[0] * (x[0] < 0 ? z1 : z0), x1 = x[1] * (x[1] > 0 ? z1 : z0);
     float y1 = y[0] * (y[0] > 0 ? z1 : z0), y0 = y[1] * (y[1] < 0 ? z1 : z0);
-    float dx = outside(s->view.x, x0, x1);
-    float dy = outside(s->view.y, y0, y1);
-    float dz = outside(-s->view.z, z0, z1);
+    float dx = hl_outside(s->view.x, x0, x1);
+    float dy = hl_outside(s->view.y, y0, y1);
+    float dz = hl_outside(-s->view.z, z0, z1);
     return dx * dx + dy * dy + dz * dz < s->radius * s->radius;
 }
 
@@ -148,16 +143,6 @@ void hl_tiles_depth(float *z0, float *z1, const float *d, uint32_t w,
         }
 }
 
-static float largest(const struct hl_light *l)
-{
-    float c = l->color[0] > l->color[1] ? l->color[0] : l->color[1];
-    c = c > l->color[2] ? c : l->color[2];
-    /* Inverse square: 1 / 0.01^2 at the centre. */
-    if (l->kind != HL_DIRECTIONAL && l->falloff == HL_INVERSE_SQUARE)
-        c *= 1e4f;
-    return c;
-}
-
 float hl_tiles_peak(const struct hl_tile_grid *g, const uint32_t *first,
                     const uint32_t *refs, const struct hl_lit_sphere *s,
                     const struct hl_light *lights)
@@ -166,7 +151,7 @@ float hl_tiles_peak(const struct hl_tile_grid *g, const uint32_t *first,
     for (uint32_t t = 0; t < g->nx * g->ny; t++) {
         float sum = 0;
         for (uint32_t i = first[t]; i < first[t + 1]; i++)
-            sum += largest(&lights[s[refs[i]].light]);
+            sum += hl_light_peak(&lights[s[refs[i]].light]);
         peak = sum > peak ? sum : peak;
     }
     return peak;

@@ -67,4 +67,9 @@ static inline void hl_cofactor3(float out[16], const float m[16])
     }
     out[15] = 1.0f;
 }
+/* How far c lies outside low..high. */
+static inline float hl_outside(float c, float low, float high)
+{
+    return c < low ? low - c : c > high ? c - high : 0.0f;
+}
 #endif

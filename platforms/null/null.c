@@ -12,8 +12,6 @@ struct null_state {
     struct hl_null_native native;
     struct null_object *buf, *tex;
     uint32_t n_calls;
-    const char *labels[64];
-    uint32_t n_labels;
 };
 
 static enum hl_result null_list(const struct hl_hooks *hooks,
@@ -243,8 +241,6 @@ static enum hl_result null_pass_run(void *state, const struct hl_bk_pass *p,
             clear(&s->tex[p->color[i].slot], &p->color[i]);
     if (p->depth.slot != HL_NO_SLOT && p->depth.load == HL_LOAD_CLEAR)
         clear(&s->tex[p->depth.slot], &p->depth);
-    if (s->n_labels < 64)
-        s->labels[s->n_labels++] = p->label;
     if (s->native.record)
         record_pass(s, p, n_draws);
     return HL_OK;
@@ -252,9 +248,8 @@ static enum hl_result null_pass_run(void *state, const struct hl_bk_pass *p,
 
 static enum hl_result null_submit(void *state, bool wait)
 {
-    struct null_state *s = state;
+    (void)state;
     (void)wait;
-    s->n_labels = 0;
     return HL_OK;
 }
 
