@@ -37,12 +37,13 @@ static void run_pass(struct hl_renderer *r)
 {
     if (r->result == HL_OK)
         r->result = hl_frame_flush(r);
-    if (r->result != HL_OK)
-        return;
-    r->pass.draws = r->draws;
-    r->pass.n_draws = r->n_draws;
-    r->result = hl_pass_run(r->device, &r->pass);
-    r->stats.draws += r->n_draws;
+    if (r->result == HL_OK) {
+        r->pass.draws = r->draws;
+        r->pass.n_draws = r->n_draws;
+        r->result = hl_pass_run(r->device, &r->pass);
+        r->stats.draws += r->n_draws;
+    }
+    /* After a failure too: draws go on being added until the pass ends. */
     r->n_draws = 0;
 }
 
@@ -132,11 +133,10 @@ static uint32_t put_batch(struct hl_renderer *r, const struct hl_frame *f,
     uint32_t at = 0;
     uint32_t stride = r->plan.kinds ? HL_LIGHT_VEC4S : HL_POINT_VEC4S;
     if (r->counting) {
-        memset(data, 0, sizeof data);
-        data[0].x = (float)n;
-        return hl_arena_put(&r->arena, data, sizeof data);
+        data[0] = hl_v4((float)n, 0, 0, 0);
+        size = stride = at = 1;
     }
-    for (uint32_t i = 0; i < n; i++) {
+    for (uint32_t i = 0; i < n && !r->counting; i++) {
         const struct hl_lit_sphere *s = &r->spheres[refs[i]];
         at += hl_light_write(data + at, &f->lights[s->light], s,
                              f->camera.view, r->plan.kinds);

@@ -86,7 +86,7 @@ static enum hl_result check_item(struct hl_renderer *r,
     if (it->surface >= r->n_surfaces)
         return refuse(r, "hl_frame.items", i, "surface is not one");
     const struct hl_surface *s = &r->surfaces[it->surface];
-    if (!it->material && !s->own_material)
+    if (!it->material && (!s->own_material || s->blended))
         return refuse(r, "hl_frame.items", i, "material is NULL");
     if (s->own_material && (!it->material_block || !it->material_bytes))
         return refuse(r, "hl_frame.items", i, "material_block is NULL");
@@ -103,7 +103,8 @@ static enum hl_result check_frame(struct hl_renderer *r,
     if ((f->n_items && !f->items) || (f->n_lights && !f->lights))
         return refuse(r, "hl_frame", 0, "items or lights is NULL");
     if (!finite_all(c->view, 16) || !(c->near > 0) || !(c->far > c->near) ||
-        !(c->tan_half_y > 0) || !finite_all(&c->far, 1))
+        !(c->tan_half_y > 0) || !finite_all(&c->far, 1) ||
+        !finite_all(&c->tan_half_y, 1))
         return refuse(r, "hl_frame.camera", 0, "not a camera");
     if (!finite_all(f->ambient, 3) || !finite_all(f->background, 3))
         return refuse(r, "hl_frame", 0, "ambient or background not finite");

@@ -34,6 +34,19 @@ static uint32_t tiles_of(const struct hl_plan *p, uint32_t *nx, uint32_t *ny)
     return *nx * *ny;
 }
 
+/* Light data of the tiles' draws: blocks for the lights there are, at most
+ * eight a tile, and 64 MiB where that would be more. */
+static size_t tile_bytes_of(const struct hl_renderer_desc *d)
+{
+    uint32_t nx, ny, batch = d->plan->batch ? d->plan->batch : 1;
+    if (d->plan->light_path != HL_LIGHT_PATH_TILES)
+        return 0;
+    size_t tiles = tiles_of(d->plan, &nx, &ny);
+    size_t blocks = least((lights_of(d) + batch - 1) / batch, 8);
+    return tiles > 0x4000000 / HL_LIGHTS_BYTES / blocks
+           ? 0x4000000 : tiles * blocks * HL_LIGHTS_BYTES;
+}
+
 /* Objects and materials: 768 bytes an item with alignment; light data: at
  * most every light for every item, and 64 MiB where that would be more. */
 static size_t frame_bytes_of(const struct hl_renderer_desc *d)
@@ -43,7 +56,7 @@ static size_t frame_bytes_of(const struct hl_renderer_desc *d)
     size_t lights = lights_of(d), items = d->max_items;
     size_t pairs = lights + 16 > 0x4000000 / 64 / items
                    ? 0x4000000 : items * (lights + 16) * 64;
-    return 0x400000 + least(items, 0x100000) * 768 + pairs;
+    return 0x400000 + least(items, 0x100000) * 768 + pairs + tile_bytes_of(d);
 }
 
 static size_t list_bytes_of(const struct hl_renderer_desc *d)

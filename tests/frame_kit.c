@@ -308,13 +308,12 @@ float *fk_draw(struct fk_scene *s, enum hl_pipeline pipeline,
     return out;
 }
 
-double fk_difference(const float *a, const float *b, size_t n, double scale)
+double fk_difference(const float *a, const float *b, size_t n)
 {
     double worst = 0;
-    for (size_t i = 0; i < n; i++) {
-        double e = fabs((double)a[i] - (double)b[i]) /
-                   (scale + fabs((double)b[i]));
-        if (!(e <= worst))
+    for (size_t i = 0; i < n * 4; i++) {
+        double e = fabs((double)a[i] - (double)b[i]);
+        if (i % 4 != 3 && !(e <= worst))
             worst = e == e ? e : INFINITY;
     }
     return worst;

@@ -75,6 +75,7 @@ float *fk_draw(struct fk_scene *s, enum hl_pipeline pipeline,
 static inline const float *fk_at(const float *picture, int x, int y)
 { return picture + (y * FK_W + x) * 4; }
 
-/* Largest |a - b| of n floats, over scale + |b|. */
-double fk_difference(const float *a, const float *b, size_t n, double scale);
+/* Largest |a - b| of the three colours of n pixels (alpha is no part of a
+ * frame); INFINITY where one is NaN. */
+double fk_difference(const float *a, const float *b, size_t n);
 #endif

@@ -171,7 +171,7 @@ static void a_page_shows_targets_passes_and_reasons(void **state)
                     "bytes, read by material as R32_UINT, error 0.000244 "
                     "metres");
     check_has(text, "  blended   once               to color, depth depth "
-                    "greater_equal, blend over");
+                    "greater, blend over");
     for (uint32_t i = 0; i < p.n_reasons; i++) {
         char reason[256];
         hlc_reason_text(&p, i, reason, sizeof reason);

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Zlib */
 /* Figure 9 of Kircher and Lawrance 2009 shows walkways whose handrails alias
  * when lighting is not filtered. Built of modules four metres long; handrails
- * have a radius of 25 mm, posts 30 mm, fence wires 6 mm. All dielectrics of
- * one roughness: the specular exponent is a constant of the scene. */
+ * are square tubes of 50 mm, their posts of 60 mm, those of stairs round and
+ * as thick; fence wires have a radius of 6 mm. All dielectrics of one
+ * roughness: the specular exponent is a constant of the scene. */
 #include "platforms/host/builder.h"
 
 #define LONG 4.0
@@ -43,14 +44,12 @@ static void make_deck(struct hlh_builder *b, struct works *w)
 /* One side, along x, at z = 0. */
 static void make_rail(struct hlh_builder *b, struct works *w)
 {
-    for (int i = 0; i < 3; i++) {
-        double y = 1.1 - 0.36 * i;
-        hlh_add_tube(b, hlh_v3(0, y, 0), hlh_v3(LONG, y, 0), 0.025, 0.025, 10,
-                     1, true);
-    }
+    for (int i = 0; i < 3; i++)
+        hlh_add_box(b, hlh_v3(LONG / 2, 1.1 - 0.36 * i, 0),
+                    hlh_v3(LONG / 2, 0.025, 0.025), 1, false);
     for (int i = 0; i < 4; i++)
-        hlh_add_tube(b, hlh_v3(0.5 + i, -0.1, 0), hlh_v3(0.5 + i, 1.1, 0),
-                     0.03, 0.03, 10, 1, true);
+        hlh_add_box(b, hlh_v3(0.5 + i, 0.5, 0), hlh_v3(0.03, 0.6, 0.03), 1,
+                    false);
     hlh_add_box(b, hlh_v3(LONG / 2, 0.06, 0), hlh_v3(LONG / 2, 0.06, 0.006), 1,
                 false);
     w->rail = hlh_build_mesh(b, "handrail", w->yellow);

@@ -1,0 +1,87 @@
+#!/bin/sh
+# SPDX-License-Identifier: Zlib
+# check.sh BUILD: what a compiler does not see. One line a check: "ok NAME",
+# "not ok NAME" with what is wrong below it, or "skip NAME: reason". Exit 1 when
+# one failed.
+set -u
+build=$1
+cd "$(dirname "$0")/.." || exit 1
+tmp=$(mktemp -d)
+trap 'rm -rf "$tmp"' EXIT
+bad=0
+
+# verdict NAME: the check passed when $tmp/out is empty.
+verdict() {
+    if [ -s "$tmp/out" ]; then
+        echo "not ok $1"
+        sed 's/^/    /' "$tmp/out" | head -n 20
+        bad=1
+    else
+        echo "ok $1"
+    fi
+}
+
+# arrows NAME FOLDER ALLOWED: files below FOLDER include only what matches.
+arrows() {
+    grep -rn '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' "$2" --include='*.[ch]' \
+        --include='*.glsl' --include='*.vert' --include='*.frag' |
+        grep -vE "\"($3)" > "$tmp/out"
+    verdict "$1"
+}
+
+core_public='core/(halflight|needs|plan|scene|frame|mesh|ids)\.h'
+hal_public='hal/(hal|caps|backend|formats)\.'
+arrows includes_shaders shaders 'shaders/'
+arrows includes_hal hal 'hal/|shaders/(shared/|variants\.def)'
+arrows includes_core core 'core/|hal/|shaders/(shared/|variants\.def)'
+arrows includes_null platforms/null "$hal_public|hal/text\.h|platforms/null/|shaders/shared/"
+arrows includes_vulkan platforms/vulkan "$hal_public|platforms/vulkan/|shaders/shared/"
+arrows includes_host platforms/host 'platforms/host/'
+arrows includes_reference platforms/reference 'platforms/reference/|platforms/host/scene\.h'
+arrows includes_tool platforms/cli "$hal_public|$core_public|shaders/shared/|platforms/"
+grep -rnE '#include[[:space:]]*<(vulkan|GL|EGL|GLFW|assimp|cjson|png|jpeglib|pthread|stdio|stdlib|unistd)' \
+    core hal shaders > "$tmp/out"
+verdict no_platform_header_below
+
+nm -u "$build/libhalflight.a" | awk '$1 == "U" { print $2 }' | sort -u |
+    grep -v '^hl_' > "$tmp/used"
+case $build in
+*sanitize*|*coverage*) echo "skip symbols: instrumented build" ;;
+*)
+    grep -v '^#' tests/symbols.txt | sort -u | comm -13 - "$tmp/used" > "$tmp/out"
+    verdict symbols ;;
+esac
+
+# Every public header alone, as C99 and as C++.
+for h in hal/caps.h hal/hal.h hal/backend.h core/needs.h core/plan.h core/scene.h core/frame.h \
+    core/mesh.h core/ids.h core/halflight.h platforms/platforms.h platforms/null/hl_null.h \
+    platforms/vulkan/hl_vulkan.h; do
+    echo "#include \"$h\"" > "$tmp/h.c"
+    ${CC:-gcc} -std=c99 -pedantic -Wall -Wextra -Wconversion -Werror -I. -fsyntax-only "$tmp/h.c" \
+        2>> "$tmp/alone"
+    if command -v g++ > /dev/null 2>&1; then
+        cp "$tmp/h.c" "$tmp/h.cc"
+        g++ -Wall -Wextra -Werror -I. -fsyntax-only "$tmp/h.cc" 2>> "$tmp/alone-cc"
+    fi
+done
+touch "$tmp/alone" "$tmp/alone-cc"
+cp "$tmp/alone" "$tmp/out"
+verdict headers_alone_c99
+if command -v g++ > /dev/null 2>&1; then
+    cp "$tmp/alone-cc" "$tmp/out"
+    verdict headers_alone_cxx
+else
+    echo "skip headers_alone_cxx: no g++ here"
+fi
+
+sources() { find core hal platforms shaders tests -name '*.[ch]' -o -name '*.glsl' -o -name '*.vert' -o -name '*.frag'; }
+sources | xargs awk 'length($0) > 100 { print FILENAME ":" FNR ": " length($0) " columns" }' > "$tmp/out"
+verdict lines_at_most_100
+# A function body: from a "{" in the first column to its "}".
+sources | grep '\.c$' | xargs awk 'FNR == 1 { open = 0 }
+    /^\{/ { open = FNR }
+    /^\}/ { if (open && FNR - open + 1 > 82) print FILENAME ":" open ": " FNR - open - 1 " lines"; open = 0 }' > "$tmp/out"
+verdict functions_at_most_80
+grep -rnwE 'TODO|FIXME|XXX|HACK' core hal platforms shaders > "$tmp/out"
+verdict nothing_left_undone
+exit $bad

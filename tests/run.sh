@@ -1,0 +1,91 @@
+#!/bin/sh
+# SPDX-License-Identifier: Zlib
+# run.sh BUILD: every test program in a process of its own, then check.sh.
+# Prints a line a program, each failure with its output, each skipped case
+# with its reason. A case of must-pass.txt that did not run and pass is a
+# failure, so that nothing drops out unseen; a crash fails the cases that it
+# kept from running. The last line counts over all of them.
+set -u
+build=$1
+here=$(dirname "$0")
+tmp=$(mktemp -d)
+trap 'rm -rf "$tmp"' EXIT
+passed=0 failed=0 skipped=0
+
+# Tests draw with the software driver, wherever they run, and keep what it
+# compiles between runs.
+for icd in /usr/share/vulkan/icd.d/lvp_icd*.json; do
+    [ -f "$icd" ] && export VK_DRIVER_FILES="${VK_DRIVER_FILES:-$icd}"
+done
+[ -n "${XDG_RUNTIME_DIR:-}" ] || export XDG_RUNTIME_DIR="$tmp"
+export MESA_SHADER_CACHE_DIR="${MESA_SHADER_CACHE_DIR:-$build/shader-cache}"
+export HL_TOOL="${HL_TOOL:-$build/halflight}"
+export ASAN_OPTIONS="${ASAN_OPTIONS:-allocator_may_return_null=1:detect_leaks=0}"
+
+# cases KIND FILE: names of the cases with that mark, one a line.
+cases() { sed -n "s/.*\[ *$1 *\] \([A-Za-z_][A-Za-z0-9_]*\).*/\1/p" "$2" | sort -u; }
+
+one() {
+    name=$1
+    log=$tmp/$name.log
+    start=$(date +%s)
+    timeout 900 "$build/tests/$name" > "$log" 2>&1
+    rc=$?
+    cases OK "$log" > "$tmp/ok"
+    cases FAILED "$log" > "$tmp/bad"
+    cases SKIPPED "$log" > "$tmp/skip"
+    cases RUN "$log" > "$tmp/run"
+    if ! [ -s "$tmp/run" ]; then    # not a cmocka program: one case
+        echo "$name" > "$tmp/run"
+        case $rc in
+        0) echo "$name" > "$tmp/ok" ;;
+        77) echo "$name" > "$tmp/skip" ;;
+        *) echo "$name" > "$tmp/bad" ;;
+        esac
+    fi
+    # Neither passed nor failed nor skipped: the program died in it.
+    sort -u "$tmp/ok" "$tmp/bad" "$tmp/skip" | comm -13 - "$tmp/run" >> "$tmp/bad"
+    grep -vxF -f "$tmp/bad" "$tmp/ok" > "$tmp/good"
+    grep -vxF -f "$tmp/bad" "$tmp/skip" > "$tmp/skips"
+    p=$(wc -l < "$tmp/good") f=$(sort -u "$tmp/bad" | wc -l) s=$(wc -l < "$tmp/skips")
+    [ "$rc" -ne 0 ] && [ "$rc" -ne 77 ] && [ "$f" -eq 0 ] && f=1
+    passed=$((passed + p)) failed=$((failed + f)) skipped=$((skipped + s))
+    sed "s/^/$name /" "$tmp/good" >> "$tmp/all-passed"
+    printf '%-24s %4d passed, %d failed, %d skipped  (%d s)\n' "$name" "$p" "$f" "$s" \
+        $(($(date +%s) - start))
+    while read -r c; do
+        why=$(grep -B 3 "SKIPPED *\] $c" "$log" | grep -v '\[' | tail -n 1)
+        echo "    skipped: $c: ${why:-no reason given}"
+    done < "$tmp/skips"
+    if [ "$f" -gt 0 ]; then
+        sort -u "$tmp/bad" | sed 's/^/    failed: /'
+        grep -v '\[ *\(RUN\|OK\) *\]' "$log" | tail -n 40 | sed 's/^/    | /'
+    fi
+}
+
+: > "$tmp/all-passed"
+for program in "$build"/tests/*; do
+    [ -x "$program" ] && one "$(basename "$program")"
+done
+
+sh "$here/check.sh" "$build" > "$tmp/check.log" 2>&1
+p=$(grep -c '^ok ' "$tmp/check.log") f=$(grep -c '^not ok ' "$tmp/check.log")
+s=$(grep -c '^skip ' "$tmp/check.log")
+printf '%-24s %4d passed, %d failed, %d skipped\n' check "$p" "$f" "$s"
+grep -v '^ok ' "$tmp/check.log" | sed 's/^/    /'
+sed -n 's/^ok /check /p' "$tmp/check.log" >> "$tmp/all-passed"
+passed=$((passed + p)) failed=$((failed + f)) skipped=$((skipped + s))
+
+sort -u "$tmp/all-passed" > "$tmp/have"
+if [ -n "${HL_UPDATE:-}" ]; then
+    cp "$tmp/have" "$here/must-pass.txt"
+    echo "must-pass.txt: written"
+fi
+grep -v '^#' "$here/must-pass.txt" | sort -u | comm -13 "$tmp/have" - > "$tmp/missing"
+if [ -s "$tmp/missing" ]; then
+    echo "must pass, but did not run and pass:"
+    sed 's/^/    /' "$tmp/missing"
+    failed=$((failed + $(wc -l < "$tmp/missing")))
+fi
+echo "$passed passed, $failed failed, $skipped skipped"
+[ "$failed" -eq 0 ]
