@@ -123,29 +123,33 @@ void hl_draw_lights(struct hl_renderer *r, struct hl_draw *d, uint32_t offset)
     bind_uniform(r, d, HL_SLOT_LIGHTS, offset, HL_LIGHTS_BYTES);
 }
 
-/* Lights `refs` (of spheres), padded with black ones to `size`, as one block;
- * when counting, only their number. HL_LIGHTS_BYTES are reserved, so that
- * the range a draw binds never ends past the buffer. */
-static uint32_t put_batch(struct hl_renderer *r, const struct hl_frame *f,
-                          const uint32_t *refs, uint32_t n, uint32_t size)
+/* Lights `refs` (of spheres), padded with black ones to `size`. */
+static uint32_t write_batch(struct hl_renderer *r, const struct hl_frame *f,
+                            const uint32_t *refs, uint32_t n, uint32_t size)
 {
     hl_vec4 data[HL_BATCH_MAX * HL_LIGHT_VEC4S];
     uint32_t at = 0;
     uint32_t stride = r->plan.kinds ? HL_LIGHT_VEC4S : HL_POINT_VEC4S;
-    if (r->counting) {
-        data[0] = hl_v4((float)n, 0, 0, 0);
-        size = stride = at = 1;
-    }
-    for (uint32_t i = 0; i < n && !r->counting; i++) {
+    for (uint32_t i = 0; i < n; i++) {
         const struct hl_lit_sphere *s = &r->spheres[refs[i]];
         at += hl_light_write(data + at, &f->lights[s->light], s,
                              f->camera.view, r->plan.kinds);
     }
     memset(data + at, 0, (size * stride - at) * sizeof *data);
-    at = hl_arena_put(&r->arena, data, size * stride * 16);
+    r->stats.light_refs += n;
+    return hl_arena_put(&r->arena, data, size * stride * 16);
+}
+
+/* As one block; when counting, only the number of lights. HL_LIGHTS_BYTES
+ * are reserved, so that the range a draw binds never ends past the buffer. */
+static uint32_t put_batch(struct hl_renderer *r, const struct hl_frame *f,
+                          const uint32_t *refs, uint32_t n, uint32_t size)
+{
+    hl_vec4 count = { (float)n, 0, 0, 0 };
+    uint32_t at = r->counting ? hl_arena_put(&r->arena, &count, sizeof count)
+                              : write_batch(r, f, refs, n, size);
     if (at + HL_LIGHTS_BYTES > r->arena.size)
         r->arena.full = true;
-    r->stats.light_refs += n;
     return at;
 }
 

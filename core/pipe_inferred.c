@@ -207,6 +207,13 @@ static bool known_light_format(enum hl_format f)
            f == HL_FORMAT_RGBA32_FLOAT || f == HL_FORMAT_RGBA8_UNORM;
 }
 
+/* Steps of a fixed range serve where light comes near its peak. An inverse
+ * square light does so a centimetre away: in sight it may be below a step. */
+static bool peak_tells(const struct hl_ask *ask)
+{
+    return ask->n.peak > 0 && !(ask->n.lights & HL_LIGHTS_INVERSE_SQUARE);
+}
+
 static enum hl_refusal choose_light_format(struct hl_plan *p,
                                            const struct hl_ask *ask)
 {
@@ -226,7 +233,7 @@ static enum hl_refusal choose_light_format(struct hl_plan *p,
         return HL_REFUSED_LIGHT_FORMAT;
     for (int i = 0; list[i] && !asked; i++) {
         if (!hl_format_usable(ask->caps, list[i], use, 1) ||
-            (list[i] == HL_FORMAT_RGBA16_UNORM && ask->n.peak <= 0))
+            (list[i] == HL_FORMAT_RGBA16_UNORM && !peak_tells(ask)))
             continue;
         if (best == HL_FORMAT_NONE)
             best = list[i];

@@ -6,7 +6,7 @@
 #include "platforms/platforms.h"
 #include "tests/check.h"
 
-/* ---- devices --------------------------------------------------------- */
+/* ---- devices ---------------------------------------------------------- */
 
 static void keep(void *user, enum hl_log_level level, enum hl_log_id id,
                  const char *text)
@@ -108,7 +108,7 @@ void ck_refused(const struct ck_machine *m, uint32_t before,
                  m->last, (int)id, part);
 }
 
-/* ---- caps ------------------------------------------------------------ */
+/* ---- caps ------------------------------------------------------------- */
 
 static void usable(struct hl_caps *c, enum hl_format f, int use)
 {
@@ -150,7 +150,7 @@ void ck_lavapipe(struct hl_caps *c)
         .sync_ns = 15000.0f };
 }
 
-/* ---- numbers --------------------------------------------------------- */
+/* ---- numbers ---------------------------------------------------------- */
 
 float ck_half(uint16_t h)
 {
@@ -219,7 +219,7 @@ void ck_near_at(const char *file, int line, const char *what, double got,
     _fail(file, line);
 }
 
-/* ---- pictures -------------------------------------------------------- */
+/* ---- pictures --------------------------------------------------------- */
 
 float *ck_read(struct hl_device *d, hl_tex tex, uint32_t *w, uint32_t *h)
 {

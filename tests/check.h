@@ -11,7 +11,7 @@
 #include "core/halflight.h"
 #include "tests/mesh_kit.h"
 
-/* ---- devices --------------------------------------------------------- */
+/* ---- devices ---------------------------------------------------------- */
 
 enum { CK_IDS = HL_MSG_DEVICE + 1 };
 
@@ -66,12 +66,12 @@ void ck_refused(const struct ck_machine *m, uint32_t before,
         assert_int_equal((m)->errors, errors_);      \
     } while (0)
 
-/* ---- caps ------------------------------------------------------------ */
+/* ---- caps ------------------------------------------------------------- */
 
 /* lavapipe of Mesa 22.3.6 as its backend describes it, from a literal. */
 void ck_lavapipe(struct hl_caps *out);
 
-/* ---- numbers --------------------------------------------------------- */
+/* ---- numbers ---------------------------------------------------------- */
 
 float ck_half(uint16_t half);
 /* Toward nearest, ties to even; or toward zero. Finite input. */
@@ -88,7 +88,7 @@ double ck_between(uint64_t *seed, double low, double high);
 void ck_near_at(const char *file, int line, const char *what, double got,
                 double want, double tolerance);
 
-/* ---- pictures -------------------------------------------------------- */
+/* ---- pictures --------------------------------------------------------- */
 
 /* A target read back as linear RGBA floats, from malloc; RGBA16_FLOAT,
  * RGBA32_FLOAT, RGBA16_UNORM. *w and *h may be NULL. */

@@ -32,6 +32,7 @@ arrows() {
 core_public='core/(halflight|needs|plan|scene|frame|mesh|ids)\.h'
 hal_public='hal/(hal|caps|backend|formats)\.'
 arrows includes_shaders shaders 'shaders/'
+arrows includes_shared shaders/shared 'shaders/shared/'
 arrows includes_hal hal 'hal/|shaders/(shared/|variants\.def)'
 arrows includes_core core 'core/|hal/|shaders/(shared/|variants\.def)'
 arrows includes_null platforms/null "$hal_public|hal/text\.h|platforms/null/|shaders/shared/"
@@ -50,6 +51,25 @@ case $build in
 *)
     grep -v '^#' tests/symbols.txt | sort -u | comm -13 - "$tmp/used" > "$tmp/out"
     verdict symbols ;;
+esac
+
+# Libraries neither print, abort, allocate behind the hooks' back nor keep
+# state of their own.
+for lib in halflight halflight-null halflight-vulkan; do
+    nm -u "$build/lib$lib.a" | awk -v lib=$lib '$1 == "U" { print lib ": " $2 }'
+done | grep -wE 'f?printf|f?puts|fputc|putchar|fwrite|abort|exit|malloc|calloc|realloc|free|getenv|__assert_fail|stdout|stderr|errno' \
+    > "$tmp/out"
+case $build in
+*sanitize*|*coverage*) echo "skip libraries_keep_quiet: instrumented build" ;;
+*) verdict libraries_keep_quiet ;;
+esac
+for lib in halflight halflight-null halflight-vulkan; do
+    objdump -h "$build/lib$lib.a" | awk -v lib=$lib '/file format/ { file = $1 }
+        ($2 == ".data" || $2 == ".bss") && $3 !~ /^0*$/ { print lib ": " file " " $2 " holds 0x" $3 }'
+done > "$tmp/out"
+case $build in
+*sanitize*|*coverage*) echo "skip no_mutable_globals: instrumented build" ;;
+*) verdict no_mutable_globals ;;
 esac
 
 # Every public header alone, as C99 and as C++.
@@ -82,6 +102,7 @@ sources | grep '\.c$' | xargs awk 'FNR == 1 { open = 0 }
     /^\{/ { open = FNR }
     /^\}/ { if (open && FNR - open + 1 > 82) print FILENAME ":" open ": " FNR - open - 1 " lines"; open = 0 }' > "$tmp/out"
 verdict functions_at_most_80
-grep -rnwE 'TODO|FIXME|XXX|HACK' core hal platforms shaders > "$tmp/out"
+grep -rnwE 'TODO|FIXME|XXX|HACK' core hal platforms shaders tests Makefile \
+    --exclude=check.sh > "$tmp/out"
 verdict nothing_left_undone
 exit $bad

@@ -15,7 +15,7 @@ struct shapes {
     struct shape shape[3];
 };
 
-/* ---- shapes ------------------------------------------------------------- */
+/* ---- shapes ----------------------------------------------------------- */
 
 static struct fk_vertex *vertex(struct shapes *s, float x, float y, float z,
                                 float nx, float ny, float nz, uint32_t group)
@@ -96,7 +96,7 @@ static void make_shapes(struct shapes *s)
     ball(s, FK_BALL);
 }
 
-/* ---- scene -------------------------------------------------------------- */
+/* ---- scene ------------------------------------------------------------ */
 
 static void make_surfaces(struct fk_scene *s)
 {
@@ -239,7 +239,7 @@ void fk_room(struct fk_scene *s, uint32_t n_lights, uint64_t *seed)
         s->frame.ambient[c] = 0.02f * (float)(c + 1);
 }
 
-/* ---- renderer ------------------------------------------------------------ */
+/* ---- renderer --------------------------------------------------------- */
 
 void fk_plan(struct hl_plan *out, struct fk_scene *s,
              enum hl_pipeline pipeline)

@@ -7,7 +7,7 @@
 #include "platforms/reference/reference.h"
 #include "tests/image_kit.h"
 
-/* ---- scene --------------------------------------------------------------- */
+/* ---- scene ------------------------------------------------------------ */
 
 static void draw_reference(struct ik_stage *s, uint32_t w, uint32_t h,
                            uint32_t samples)
@@ -58,7 +58,7 @@ void ik_end(struct ik_stage *s)
     free(s->ids);
 }
 
-/* ---- pictures ------------------------------------------------------------- */
+/* ---- pictures --------------------------------------------------------- */
 
 static struct hlh_picture take(struct hl_device *d, hl_tex tex)
 {
@@ -113,7 +113,7 @@ struct hlc_metrics ik_compare(struct ik_stage *s, struct hlh_picture *picture,
     return m;
 }
 
-/* ---- failures -------------------------------------------------------------- */
+/* ---- failures --------------------------------------------------------- */
 
 static void write_one(const struct hlh_picture *p, const char *name,
                       const char *kind)

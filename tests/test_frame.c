@@ -10,7 +10,7 @@
 #include "platforms/null/hl_null.h"
 #include "tests/frame_kit.h"
 
-/* ---- creating ----------------------------------------------------------- */
+/* ---- creating --------------------------------------------------------- */
 
 static uint32_t live(const struct hl_device *d)
 {
@@ -120,7 +120,7 @@ static void destroying_leaves_nothing(void **state)
     fk_end(&s);
 }
 
-/* ---- refusing frames ----------------------------------------------------- */
+/* ---- refusing frames -------------------------------------------------- */
 
 /* A frame that is refused: result, message, and nothing recorded; the next
  * right one is drawn. */
@@ -208,6 +208,39 @@ static void bad_items_and_cameras_are_named(void **state)
     assert_int_equal(hl_frame_draw(run.r, NULL, NULL), HL_ERR_INVALID);
     fk_destroy(&run);
     fk_end(&s);
+}
+
+/* An item of a surface with a stage of its own brings its block, and where it
+ * is blended, which is drawn forward, a material too. */
+static void own_stages_need_their_blocks(void **state)
+{
+    (void)state;
+    static const struct hl_code code = { NULL, 0, NULL, NULL };
+    struct ck_machine m;
+    struct fk_scene s;
+    struct fk_run run;
+    float block[4] = { 0 };
+    assert_true(ck_open(&m, "null", NULL));      /* takes any stage          */
+    fk_begin(&s, &m);
+    s.surface[FK_PLAIN].own_material = &code;
+    s.surface[FK_BLENDED].own_material = &code;
+    for (int i = 0; i < 3; i++) {
+        struct hl_item *it = fk_add(&s, FK_BOX,
+                                    i == 1 ? FK_BLENDED : FK_PLAIN,
+                                    (float)i * 3 - 3, 0, 0, 1);
+        it->material_block = block;
+        it->material_bytes = sizeof block;
+        fk_light(&s, 0, 0, 3, 5);
+    }
+    s.item[0].material = NULL;
+    fk_prepare(&run, &s, HL_PIPELINE_INFERRED);
+    assert_int_equal(fk_create(&run), HL_OK);
+    BAD(item[2].material_block = NULL, "hl_frame.items 2: material_block");
+    BAD(item[0].material_bytes = 0, "hl_frame.items 0: material_block");
+    BAD(item[1].material = NULL, "hl_frame.items 1: material is NULL");
+    fk_destroy(&run);
+    fk_end(&s);
+    ck_close(&m);
 }
 
 static void more_than_was_stated_is_refused(void **state)
@@ -300,7 +333,7 @@ static void inspecting_is_checked(void **state)
     fk_end(&s);
 }
 
-/* ---- failures of the machine -------------------------------------------- */
+/* ---- failures of the machine ------------------------------------------ */
 
 /* Create, draw, inspect on a null device whose n-th call fails. Returns
  * whether all worked. */
@@ -360,7 +393,7 @@ static void any_call_may_fail(void **state)
     print_message("%u failures\n", total);
 }
 
-/* ---- passes are the plan's ------------------------------------------------ */
+/* ---- passes are the plan's -------------------------------------------- */
 
 struct record { char text[64][200]; int n; };
 
@@ -514,6 +547,7 @@ int main(void)
         BOTH(destroying_leaves_nothing),
         BOTH(bad_lights_are_named_by_index),
         BOTH(bad_items_and_cameras_are_named),
+        cmocka_unit_test(own_stages_need_their_blocks),
         BOTH(more_than_was_stated_is_refused),
         BOTH(capacities_that_run_out_are_named),
         BOTH(inspecting_is_checked),

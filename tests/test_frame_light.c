@@ -12,7 +12,7 @@
 
 enum { N = FK_W * FK_H };
 
-/* ---- the oracle ---------------------------------------------------------- */
+/* ---- the oracle ------------------------------------------------------- */
 
 struct oracle {
     double d[3];             /* D                                            */
@@ -193,7 +193,7 @@ static void make_room(struct fk_scene *s, void **state, bool kinds,
         make_shiny(s, false);
 }
 
-/* ---- the light pass is the model ------------------------------------------ */
+/* ---- the light pass is the model -------------------------------------- */
 
 /* In 32 bits: positions come from a depth that is exact to 1e-7, cones from
  * cosines whose difference is 0.2: 1e-6 of a light; and the sum of 60 rounds
@@ -287,7 +287,7 @@ static void exponents_differ_by_texel(void **state)
     fk_end(&s);
 }
 
-/* ---- one light, many ways -------------------------------------------------- */
+/* ---- one light, many ways --------------------------------------------- */
 
 static float *light_of(struct fk_scene *s, const struct case_of_light *c)
 {
@@ -374,7 +374,7 @@ static void depth_bounds_change_no_bit(void **state)
     fk_end(&s);
 }
 
-/* ---- formats and batches ---------------------------------------------------- */
+/* ---- formats and batches ---------------------------------------------- */
 
 /* Blends that a texel can see: every light's rectangle is the screen. */
 static void make_bright(struct fk_scene *s, void **state)
@@ -438,7 +438,7 @@ static void batches_divide_the_loss(void **state)
     fk_end(&s);
 }
 
-/* ---- the filter at 1:1 ------------------------------------------------------- */
+/* ---- the filter at 1:1 ------------------------------------------------ */
 
 static void at_equal_sizes_the_filter_is_a_fetch(void **state)
 {
@@ -464,7 +464,7 @@ static void at_equal_sizes_the_filter_is_a_fetch(void **state)
     fk_end(&s);
 }
 
-/* ---- inferred against forward ------------------------------------------------ */
+/* ---- inferred against forward ----------------------------------------- */
 
 /* Both in 32 bits, L-buffer as large as the frame: what is left is the
  * normal's encoding, 0.0069 degrees up to 139 from the view axis (conformance

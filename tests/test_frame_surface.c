@@ -29,7 +29,7 @@ static void check_color(const float *p, double r, double g, double b)
     ck_near((double)p[2], b, HALF(b) + 1e-6);
 }
 
-/* ---- background ---------------------------------------------------------- */
+/* ---- background ------------------------------------------------------- */
 
 static void nothing_tints_the_background(void **state)
 {
@@ -87,7 +87,7 @@ static void emission_ambient_and_light_add(void **state)
     fk_end(&s);
 }
 
-/* ---- blended -------------------------------------------------------------- */
+/* ---- blended ---------------------------------------------------------- */
 
 static struct hl_item *glass(struct fk_scene *s, float z, float r, float g,
                              float b, float alpha)
@@ -164,7 +164,7 @@ static void blended_surfaces_are_lit_alike(void **state)
     fk_end(&s);
 }
 
-/* ---- masked ---------------------------------------------------------------- */
+/* ---- masked ----------------------------------------------------------- */
 
 /* Alpha 255 in the left half of the texture, 0 in the right. */
 static hl_tex half_texture(struct ck_machine *m)
@@ -238,7 +238,7 @@ static void textures_and_colours_multiply(void **state)
     fk_end(&s);
 }
 
-/* ---- sides ------------------------------------------------------------------ */
+/* ---- sides ------------------------------------------------------------ */
 
 static void turn_around(struct hl_item *it)
 {
@@ -300,7 +300,7 @@ static void mirrored_items_are_not_inside_out(void **state)
     fk_end(&s);
 }
 
-/* ---- samples ----------------------------------------------------------------- */
+/* ---- samples ---------------------------------------------------------- */
 
 /* A tilted edge: interior and background as with one sample, pixels of the
  * edge are quarters. */
@@ -358,7 +358,7 @@ static void samples_keep_the_inside(void **state)
     fk_end(&s);
 }
 
-/* ---- many draws, many frames -------------------------------------------------- */
+/* ---- many draws, many frames ------------------------------------------ */
 
 /* One plane of 5,000 quads is the plane of one quad. */
 static void long_passes_draw_the_same_picture(void **state)
@@ -475,7 +475,7 @@ static void a_frame_drawn_twice_is_the_same_bits(void **state)
     }
 }
 
-/* ---- inside -------------------------------------------------------------------- */
+/* ---- inside ----------------------------------------------------------- */
 
 /* Item 0 left, item 1 (a box: the face +z is group 4) right, of which both
  * are nearer than item 2, which fills the rest. */

@@ -7,7 +7,7 @@
 #include "platforms/platforms.h"
 #include "tests/check.h"
 
-/* ---- devices ----------------------------------------------------------- */
+/* ---- devices ---------------------------------------------------------- */
 
 static void a_device_needs_hooks_a_version_and_a_backend(void **state)
 {
@@ -89,7 +89,7 @@ static void formats_have_rows_and_nonsense_has_none(void **state)
     assert_int_equal(hl_format_info((enum hl_format)-1)->bytes, 0);
 }
 
-/* ---- buffers ------------------------------------------------------------ */
+/* ---- buffers ---------------------------------------------------------- */
 
 static hl_buf make_buf(struct ck_machine *m, size_t bytes, uint32_t usage)
 {
@@ -154,7 +154,7 @@ static void buffer_writes_stay_inside(void **state)
     hl_buf_destroy(m->device, &b);
 }
 
-/* ---- textures ------------------------------------------------------------ */
+/* ---- textures --------------------------------------------------------- */
 
 static struct hl_tex_desc plain(uint32_t w, uint32_t h)
 {
@@ -349,7 +349,7 @@ static void texture_reads_need_readback_and_their_bytes(void **state)
     hl_tex_destroy(m->device, &ms);
 }
 
-/* ---- programs ------------------------------------------------------------ */
+/* ---- programs --------------------------------------------------------- */
 
 static struct hl_prog_desc screen(void)
 {
@@ -475,7 +475,7 @@ static void program_targets_are_checked(void **state)
     prog_refused(m, &p, HL_ERR_UNSUPPORTED, HL_MSG_FORMAT, "R32_UINT");
 }
 
-/* ---- handles -------------------------------------------------------------- */
+/* ---- handles ---------------------------------------------------------- */
 
 static void stale_handles_are_refused_not_followed(void **state)
 {

@@ -8,7 +8,7 @@
 #include "platforms/platforms.h"
 #include "tests/check.h"
 
-/* ---- a life of a device ------------------------------------------------ */
+/* ---- a life of a device ----------------------------------------------- */
 
 struct life {
     struct hl_device *d;
@@ -69,7 +69,7 @@ static void forget(struct life *l)
     hl_prog_destroy(l->d, &l->prog);
 }
 
-/* ---- host memory ------------------------------------------------------- */
+/* ---- host memory ------------------------------------------------------ */
 
 /* Open, live, close with the fail_at-th allocation failing. Returns whether
  * the whole life worked. */
@@ -123,7 +123,7 @@ static void every_allocation_may_fail(void **state)
     assert_true(starved(backend, n + 1, false, &unused));
 }
 
-/* ---- the machine's own failures ---------------------------------------- */
+/* ---- the machine's own failures --------------------------------------- */
 
 static void every_machine_call_may_fail(void **state)
 {
@@ -250,7 +250,7 @@ static void a_lost_device_stays_lost(void **state)
     }
 }
 
-/* ---- pools -------------------------------------------------------------- */
+/* ---- pools ------------------------------------------------------------ */
 
 static void pools_are_as_large_as_asked(void **state)
 {
@@ -337,7 +337,7 @@ static void many_live_objects_are_no_trouble(void **state)
     ck_close(&m);
 }
 
-/* ---- the null backend --------------------------------------------------- */
+/* ---- the null backend ------------------------------------------------- */
 
 struct lines { char text[8][160]; int n; };
 

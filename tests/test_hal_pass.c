@@ -112,7 +112,7 @@ static void begin(struct stage *s, void **state)
     set_up_draw(s);
 }
 
-/* ---- refusing and allowing ------------------------------------------- */
+/* ---- refusing and allowing -------------------------------------------- */
 
 static void run_refused(struct stage *s, enum hl_log_id id, const char *part)
 {
@@ -290,9 +290,23 @@ static void draws_stay_inside_their_indices(void **state)
     FINE(draw[1].vertex[0].id, 0);
     FINE(draw[1].index.id, 0);
     FINE(draw[1].instances, 2);
+    struct hl_prog_desc p = solid();
+    p.layout.attr[0].format = HL_ATTR_F32X3;
+    p.layout.attr[0].stream = 2;
+    p.layout.stride[2] = 12;
+    hl_prog reads = make_prog(s.m, &p);
+    BAD(draw[1].prog, reads, HL_MSG_ARGUMENT, "a stream that is not bound");
+    s.draw[1].vertex[2] = s.vertex;
+    FINE(draw[1].prog, reads);
     s.pass.draws = NULL;
     assert_int_equal(hl_pass_run(s.m->device, &s.pass), HL_ERR_INVALID);
     FINE(pass.n_draws, 0);
+    s.pass.n_draws = 0x1000001;         /* refused before they are looked at */
+    CK_REFUSED(s.m, hl_pass_run(s.m->device, &s.pass), HL_ERR_MEMORY,
+               HL_MSG_MEMORY, "hl_pass.n_draws");
+    struct hl_timing timing;
+    assert_int_equal(hl_timings(NULL, &timing, 1), 0);
+    assert_int_equal(hl_timings(s.m->device, NULL, 1), 0);
 }
 
 static void ranges_are_checked(void **state)
@@ -347,6 +361,10 @@ static void textures_are_checked(void **state)
     FINE(texture[0].tex, s.depth);
     FINE(texture[0].tex, s.other);
     FINE(texture[0].tex.id, 0);
+    hl_tex whole = tex(s.m, HL_FORMAT_R32_UINT, W, 1, HL_TEX_SAMPLED);
+    s.texture[0].tex = whole;            /* integers are fetched only        */
+    BAD(texture[0].filter, HL_FILTER_LINEAR, HL_MSG_ARGUMENT, "only fetches");
+    FINE(texture[0].filter, HL_FILTER_TRILINEAR);
     struct hl_prog_desc p = solid();
     p.samples = 4;
     p.depth = HL_FORMAT_NONE;

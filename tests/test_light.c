@@ -209,7 +209,8 @@ static void no_lit_pixel_is_outside_a_lights_rectangle(void **state)
         double r = exp(ck_between(&seed, -3, 3));
         /* In front, behind, around the eye, through the near plane. */
         double z = i % 4 == 0 ? ck_between(&seed, -1, 1) * r * 1.1
-                   : i % 4 == 1 ? -(double)cam.near - ck_between(&seed, -1, 1) * r
+                   : i % 4 == 1
+                   ? -(double)cam.near - ck_between(&seed, -1, 1) * r
                    : -exp(ck_between(&seed, -3, 6)) * (i % 8 == 2 ? -1 : 1);
         double far_off = fabs(z) + r;
         struct hl_light l = point((float)(far_off * ck_between(&seed, -2, 2)),

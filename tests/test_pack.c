@@ -9,7 +9,7 @@
 
 #define DEG (180.0 / 3.14159265358979323846)
 
-/* ---- normals: what a format keeps of them ---------------------------- */
+/* ---- normals: what a format keeps of them ----------------------------- */
 
 typedef float (*store_fn)(float);      /* one component, -1..1, and back     */
 

@@ -135,7 +135,8 @@ static uint32_t compare_codes(const struct bench *b, int c, double error)
 {
     uint32_t ties = 0;
     for (uint32_t i = 0; i < N; i++) {
-        double w = (double)b->want[i][c] * 65535, g = (double)b->got[i][c] * 65535;
+        double w = (double)b->want[i][c] * 65535;
+        double g = (double)b->got[i][c] * 65535;
         double x = floor(w + 0.5), y = floor(g + 0.5);
         if (x == y)
             continue;
@@ -379,9 +380,11 @@ static void filter_is_alike(void **state)
         compare(b, c, 5e-7, 0, "hl_dsf_weights");
     for (uint32_t i = 0; i < N; i++) {
         float *a = b->args[i];
-        four(a, (float)ck_between(&seed, 0, 50), (float)ck_between(&seed, 0, 50),
+        four(a, (float)ck_between(&seed, 0, 50),
+             (float)ck_between(&seed, 0, 50),
              (float)ck_between(&seed, 0, 20), mk_unit(&seed));
-        four(b->want[i], hl_dsf_threshold(0.01f, 1.5f, 0.001f, a[0], a[1], a[2]),
+        four(b->want[i],
+             hl_dsf_threshold(0.01f, 1.5f, 0.001f, a[0], a[1], a[2]),
              hl_dsf_accept(a[0], a[3], a[1], a[3], a[2], 0.5f), 0, 0);
     }
     evaluate(b, 12);

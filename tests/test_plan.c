@@ -23,7 +23,8 @@ static uint32_t some_count(uint64_t *seed)
     static const uint32_t odd[] = { 0, 1, 7, 8, 9, 63, 64, 65535, 0x7fffffff,
                                     0xffffffff };
     uint32_t k = mk_below(seed, 4);
-    return k == 0 ? odd[mk_below(seed, 10)] : mk_below(seed, k == 1 ? 20 : 5000);
+    return k == 0 ? odd[mk_below(seed, 10)]
+                  : mk_below(seed, k == 1 ? 20 : 5000);
 }
 
 static float some_number(uint64_t *seed)
@@ -170,7 +171,7 @@ static void check_plan(const struct hl_plan *p, const struct hl_needs *n,
     assert_true(!p->tile_depth || !n->no_tile_depth);
 }
 
-/* ---- properties -------------------------------------------------------- */
+/* ---- properties ------------------------------------------------------- */
 
 struct guarded { uint8_t before[64]; struct hl_plan plan; uint8_t after[64]; };
 
@@ -543,7 +544,7 @@ static void blending_is_planned_only_for_blended_scenes(void **state)
         }
 }
 
-/* ---- light formats ----------------------------------------------------- */
+/* ---- light formats ---------------------------------------------------- */
 
 /* Predicted for values of an eighth of the peak: u (n + 1) / 2 with
  * u = 2^-10 for half floats (conformance b3). */
@@ -636,7 +637,7 @@ static void many_blends_need_a_better_frame(void **state)
                      HL_FORMAT_RGBA32_FLOAT);
 }
 
-/* ---- costs ------------------------------------------------------------- */
+/* ---- costs ------------------------------------------------------------ */
 
 static void few_lights_are_drawn_forward_many_inferred(void **state)
 {
@@ -667,7 +668,7 @@ static void a_machine_without_costs_still_plans(void **state)
     assert_true(p.cost_ms == 0);
 }
 
-/* ---- layout ------------------------------------------------------------ */
+/* ---- layout ----------------------------------------------------------- */
 
 /* Conformance b1 at 90 degrees, and b3. */
 static void encoding_errors_are_the_derived_ones(void **state)

@@ -60,17 +60,19 @@ void hlc_world_free(struct hlc_world *world);
 
 /* ---- view.c -------------------------------------------------------- */
 
-/* The scene's camera. near and far in metres, 0 = by the scene's bounds:
+/* The scene's camera. near and far in metres, taken as they are; 0 = by the
+ * scene's bounds:
  *
  * far   depth of the farthest corner of the bounds, + 0.1 %: the DSF stores
  *       depth as a share of it, so it is kept tight; 1 if all lies behind;
- * near  depth of the nearest corner, - 0.1 %, and at least far / 100,000
- *       (fine_depth) or far / 1,000. With reversed floating point depth the
- *       rounding error is the same share of z for any near; integer depth
- *       loses bits to a small one.
+ * near  depth of the nearest corner, - 0.1 %, and at least 1 / 100,000
+ *       (fine_depth) or 1 / 1,000 of that far, or of the given one where that
+ *       is nearer. With reversed floating point depth the rounding error is
+ *       the same share of z for any near; integer depth loses bits to a
+ *       small one.
  *
- * Nothing in sight is cut off unless it is nearer than that. False when the
- * camera or the pair is not usable. */
+ * By the bounds, nothing in sight is cut off unless it is nearer than that.
+ * False when the camera or the pair is not usable. */
 bool hlc_view(struct hl_camera *out, const struct hlh_scene *scene,
               double near, double far, bool fine_depth);
 

@@ -17,39 +17,18 @@ struct planned {
     struct hl_plan plan;
 };
 
-/* ---- making ------------------------------------------------------------- */
-
-static int make_plan(struct planned *p, const struct hlc_options *o)
-{
-    struct hl_camera camera;
-    const struct hl_caps *caps = hl_device_caps(p->machine.device);
-    if (!hlc_view(&camera, &p->scene, o->near, o->far, true))
-        return hlc_fail(HLC_BAD, "%s: the camera, near or far cannot be used",
-                        p->scene.name);
-    hlc_frame(&p->frame, &p->world, &camera);
-    hlc_needs(&p->needs, &p->world, &p->frame, o);
-    int code = hlc_plan_open(&p->plan, &p->needs, caps, o);
-    /* near follows the depth format that the plan chose. */
-    if (code == HLC_DONE)
-        hlc_view(&p->frame.camera, &p->scene, o->near, o->far,
-                 p->plan.reversed_depth);
-    return code;
-}
-
 static int open_all(struct planned *p, const struct hlc_options *o)
 {
-    struct hlc_world_options w = { o->no_normal_maps, o->no_specular,
-                                   o->ids_scheme };
     struct hlh_error error;
     if (!hlc_scene_open(&p->scene, o, &error))
         return hlc_fail(HLC_BAD, "%s", error.text);
     int code = hlc_machine_open(&p->machine, o);
-    if (code != HLC_DONE)
-        return code;
-    if (!hlc_world_create(&p->world, p->machine.device, &p->scene, &w,
-                          &error))
-        return hlc_fail(HLC_BAD, "%s", error.text);
-    return make_plan(p, o);
+    if (code == HLC_DONE)
+        code = hlc_world_open(&p->world, &p->machine, &p->scene, o);
+    if (code == HLC_DONE)
+        code = hlc_plan_open(&p->frame, &p->needs, &p->plan, &p->world,
+                             hl_device_caps(p->machine.device), o);
+    return code;
 }
 
 static void close_all(struct planned *p)

@@ -20,27 +20,6 @@ static int refused(const struct hlc_render *r, const char *what,
 
 /* ---- making ------------------------------------------------------------ */
 
-/* The plan needs far and the lights in sight, near needs the plan's depth
- * format: so the view is made twice. */
-static int make_plan(struct hlc_render *r)
-{
-    const struct hlc_options *o = r->o;
-    struct hl_camera camera;
-    if (!hlc_view(&camera, &r->scene, o->near, o->far, true))
-        return hlc_fail(HLC_BAD, "%s: camera: eye, target, field of view or "
-                        "near and far are not usable", r->scene.name);
-    hlc_frame(&r->frame, &r->world, &camera);
-    hlc_needs(&r->needs, &r->world, &r->frame, o);
-    int code = hlc_plan_open(&r->plan, &r->needs, &r->caps, o);
-    if (code != HLC_DONE)
-        return code;
-    hlc_view(&r->frame.camera, &r->scene, o->near, o->far,
-             r->plan.reversed_depth);
-    r->near = (double)r->frame.camera.near;
-    r->far = (double)r->frame.camera.far;
-    return HLC_DONE;
-}
-
 static int make_renderer(struct hlc_render *r)
 {
     struct hl_renderer_desc d;
@@ -64,9 +43,6 @@ static int make_renderer(struct hlc_render *r)
 
 static int open_all(struct hlc_render *r)
 {
-    struct hlc_world_options w = { r->o->no_normal_maps, r->o->no_specular,
-                                   r->o->ids_scheme };
-    struct hlh_error error;
     int code = hlc_machine_open(&r->machine, r->o);
     if (code != HLC_DONE)
         return code;
@@ -76,13 +52,15 @@ static int open_all(struct hlc_render *r)
         return hlc_fail(HLC_BAD, "--size: %s draws at most %u x %u",
                         r->caps.device, r->caps.max_tex_dim,
                         r->caps.max_tex_dim);
-    if (!hlc_world_create(&r->world, r->machine.device, &r->scene, &w, &error))
-        return hlc_fail(HLC_BAD, "%s%s%s%s", error.text,
-                        r->machine.complaint[0] ? " (" : "",
-                        r->machine.complaint,
-                        r->machine.complaint[0] ? ")" : "");
-    code = make_plan(r);
-    return code == HLC_DONE ? make_renderer(r) : code;
+    code = hlc_world_open(&r->world, &r->machine, &r->scene, r->o);
+    if (code == HLC_DONE)
+        code = hlc_plan_open(&r->frame, &r->needs, &r->plan, &r->world,
+                             &r->caps, r->o);
+    if (code != HLC_DONE)
+        return code;
+    r->near = (double)r->frame.camera.near;
+    r->far = (double)r->frame.camera.far;
+    return make_renderer(r);
 }
 
 /* ---- frames ------------------------------------------------------------ */

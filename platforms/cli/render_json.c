@@ -16,46 +16,6 @@ static void text(cJSON *in, const char *key, const char *value)
     cJSON_AddStringToObject(in, key, value ? value : "");
 }
 
-static void put3(cJSON *in, const char *key, const float v[3])
-{
-    double d[3] = { (double)v[0], (double)v[1], (double)v[2] };
-    hlc_json_reals(in, key, d, 3, 9);
-}
-
-/* 0 stands for no limit. */
-static void put_limit(cJSON *in, const char *key, double metres)
-{
-    if (metres > 0)
-        hlc_json_real(in, key, metres, 9);
-    else
-        cJSON_AddNullToObject(in, key);
-}
-
-static void put_scene(cJSON *tree, const struct hlc_render *r)
-{
-    const struct hlh_scene *s = &r->scene;
-    cJSON *o = object(tree, "scene");
-    text(o, "name", s->name);
-    hlc_json_uint(o, "objects", s->n_objects);
-    hlc_json_uint(o, "triangles", s->n_triangles);
-    hlc_json_uint(o, "lights", s->n_lights);
-    hlc_json_uint(o, "lights_range_derived", s->lights_range_derived);
-    cJSON_AddBoolToObject(o, "lights_are_default", s->lights_are_default);
-    hlc_json_uint(o, "triangles_dropped", s->triangles_dropped);
-    hlc_json_uint(o, "normals_repaired", s->normals_repaired);
-    put3(o, "ambient", s->ambient);
-    put3(o, "background", s->background);
-    put3(o, "bounds_min", s->bounds_min);
-    put3(o, "bounds_max", s->bounds_max);
-    o = object(tree, "camera");
-    put3(o, "eye", s->camera.eye);
-    put3(o, "target", s->camera.target);
-    hlc_json_real(o, "vfov", (double)s->camera.vfov, 9);
-    put_limit(o, "near", r->near);
-    put_limit(o, "far", r->far);
-    cJSON_AddBoolToObject(o, "default", s->camera_is_default);
-}
-
 static void put_machine(cJSON *tree, const struct hlc_render *r)
 {
     bool reference = r->o->reference;
@@ -134,6 +94,10 @@ static void put_counts(cJSON *tree, const struct hlc_render *r)
     /* Lights that a full list left out: none of today's pipelines drops one,
      * they refuse the frame instead. */
     hlc_json_uint(c, "overflow", 0);
+    if (r->plan.light_width) {
+        hlc_json_real(c, "light_peak", (double)r->stats.light_peak, 6);
+        cJSON_AddBoolToObject(c, "light_may_clip", r->stats.light_may_clip);
+    }
     hlc_json_uint(tree, "non_finite_pixels", r->non_finite);
 }
 
@@ -183,7 +147,7 @@ bool hlc_render_json(const struct hlc_render *r, struct hlh_error *error)
     bool device = !r->o->reference;
     uint32_t lw = device ? r->plan.light_width : 0;
     uint32_t lh = device ? r->plan.light_height : 0;
-    put_scene(tree, r);
+    hlc_json_scene(tree, &r->scene, r->near, r->far);
     hlc_json_size(tree, "size", r->o->width, r->o->height);
     hlc_json_size(tree, "light_size", lw ? lw : r->o->width,
                   lh ? lh : r->o->height);

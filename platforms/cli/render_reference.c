@@ -36,7 +36,7 @@ static void options_of(struct hlr_options *out, const struct hlc_render *r,
     *out = (struct hlr_options){
         .width = o->width, .height = o->height, .samples = o->samples,
         .grid = o->supersample, .normal_maps = !o->no_normal_maps,
-        .near = o->near, .far = o->far,
+        .no_specular = o->no_specular, .near = o->near, .far = o->far,
         .progress = isatty(STDERR_FILENO) ? show : NULL, .user = p
     };
 }
@@ -48,9 +48,6 @@ int hlc_render_reference(struct hlc_render *r)
     struct hlr_options options;
     struct hlr_stats stats;
     size_t n = (size_t)r->o->width * r->o->height;
-    if (r->o->no_specular)
-        return hlc_fail(HLC_BAD, "--no-specular: the reference renderer draws "
-                        "the whole model");
     options_of(&options, r, &p);
     r->near = r->o->near;
     r->far = r->o->far;

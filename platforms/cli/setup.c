@@ -103,10 +103,25 @@ void hlc_machine_close(struct hlc_machine *m)
     hl_device_close(&m->device);
 }
 
+/* ---- world ------------------------------------------------------------- */
+
+int hlc_world_open(struct hlc_world *out, const struct hlc_machine *machine,
+                   const struct hlh_scene *scene, const struct hlc_options *o)
+{
+    struct hlc_world_options w = { o->no_normal_maps, o->no_specular,
+                                   o->ids_scheme };
+    struct hlh_error error;
+    const char *more = machine->complaint;
+    if (hlc_world_create(out, machine->device, scene, &w, &error))
+        return HLC_DONE;
+    return hlc_fail(HLC_BAD, "%s%s%s%s", error.text, more[0] ? " (" : "",
+                    more, more[0] ? ")" : "");
+}
+
 /* ---- plan -------------------------------------------------------------- */
 
-int hlc_plan_open(struct hl_plan *out, const struct hl_needs *needs,
-                  const struct hl_caps *caps, const struct hlc_options *o)
+static int make_plan(struct hl_plan *out, const struct hl_needs *needs,
+                     const struct hl_caps *caps, const struct hlc_options *o)
 {
     enum hl_refusal why;
     enum hl_result r = hl_plan_make(out, o->pipeline, needs, caps, &why);
@@ -119,4 +134,24 @@ int hlc_plan_open(struct hl_plan *out, const struct hl_needs *needs,
     return hlc_fail(machine ? HLC_NO_DEVICE : HLC_BAD, "%s on %s: %s",
                     hlc_pipeline_name(o->pipeline), caps->device,
                     text[0] ? text : hl_result_name(r));
+}
+
+/* The plan needs far and the lights in sight, near needs the plan's depth
+ * format: so the view is made twice. */
+int hlc_plan_open(struct hl_frame *frame, struct hl_needs *needs,
+                  struct hl_plan *plan, const struct hlc_world *world,
+                  const struct hl_caps *caps, const struct hlc_options *o)
+{
+    struct hl_camera camera;
+    const struct hlh_scene *scene = world->scene;
+    if (!hlc_view(&camera, scene, o->near, o->far, true))
+        return hlc_fail(HLC_BAD, "%s: camera: eye, target, field of view or "
+                        "near and far are not usable", scene->name);
+    hlc_frame(frame, world, &camera);
+    hlc_needs(needs, world, frame, o);
+    int code = make_plan(plan, needs, caps, o);
+    if (code == HLC_DONE)
+        hlc_view(&frame->camera, scene, o->near, o->far,
+                 plan->reversed_depth);
+    return code;
 }

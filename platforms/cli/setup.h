@@ -22,9 +22,18 @@ struct hlc_machine {
 int hlc_machine_open(struct hlc_machine *out, const struct hlc_options *o);
 void hlc_machine_close(struct hlc_machine *machine);
 
-/* hl_plan_make with the options' pipeline. An exit code, after one line on
- * stderr: HLC_BAD for what no change of machine would help, or what was asked
- * for by an option; HLC_NO_DEVICE for a machine without the formats. */
-int hlc_plan_open(struct hl_plan *out, const struct hl_needs *needs,
+/* The scene's world on the machine, by the options. An exit code, after one
+ * line on stderr when it is not HLC_DONE. */
+int hlc_world_open(struct hlc_world *out, const struct hlc_machine *machine,
+                   const struct hlh_scene *scene,
+                   const struct hlc_options *o);
+
+/* The frame of the world seen by its scene's camera, with near and far as
+ * the plan's depth format wants them; its needs; and hl_plan_make with the
+ * options' pipeline. An exit code, after one line on stderr: HLC_BAD for what
+ * no change of machine would help, or what was asked for by an option;
+ * HLC_NO_DEVICE for a machine without the formats. */
+int hlc_plan_open(struct hl_frame *frame, struct hl_needs *needs,
+                  struct hl_plan *plan, const struct hlc_world *world,
                   const struct hl_caps *caps, const struct hlc_options *o);
 #endif

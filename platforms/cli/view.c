@@ -91,15 +91,13 @@ bool hlc_view(struct hl_camera *out, const struct hlh_scene *scene,
     if (!axes_of(&a, &scene->camera))
         return false;
     depths_of(&low, &high, &a, scene);
+    double reach = high > 0 ? high * (1 + margin) : 1;
     if (!(far > 0))
-        far = high > 0 ? high * (1 + margin) : 1;
-    if (near > 0 && far <= near)
-        far = 2 * near;
-    double least = far * (fine_depth ? 1e-5 : 1e-3);
-    if (!(near > 0))
-        near = low * (1 - margin);
-    if (!(near >= least))
-        near = least;
+        far = near >= reach ? 2 * near : reach;
+    if (!(near > 0)) {
+        double least = fmin(far, reach) * (fine_depth ? 1e-5 : 1e-3);
+        near = fmax(low * (1 - margin), least);
+    }
     if (near >= far)
         near = far / 2;
     if (hl_camera_look_at(out, scene->camera.eye, scene->camera.target,

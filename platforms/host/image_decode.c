@@ -24,7 +24,7 @@ static void png_stop(png_structp png, png_const_charp message)
     longjmp(job->leave, 1);
 }
 
-static void png_quiet(png_structp png, png_const_charp message)
+void hlh_png_quiet(png_structp png, png_const_charp message)
 {
     (void)png;
     (void)message;
@@ -93,7 +93,7 @@ bool hlh_png_read(struct hlh_png_job *job, const void *bytes, size_t size)
     job->rows = NULL;
     snprintf(job->reason, sizeof job->reason, "out of memory");
     job->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, job, png_stop,
-                                      png_quiet);
+                                      hlh_png_quiet);
     if (!job->png)
         return false;
     job->info = png_create_info_struct(job->png);

@@ -31,6 +31,9 @@ struct hlh_png_job {
     jmp_buf leave;
 };
 
+/* A warning handler that says nothing. */
+void hlh_png_quiet(png_structp png, png_const_charp message);
+
 /* False: reason says why, pixels is NULL. */
 bool hlh_png_read(struct hlh_png_job *job, const void *bytes, size_t size);
 

@@ -20,12 +20,6 @@ static void stop(png_structp png, png_const_charp message)
     longjmp(job->leave, 1);
 }
 
-static void quiet(png_structp png, png_const_charp message)
-{
-    (void)png;
-    (void)message;
-}
-
 static void put(png_structp png, png_bytep bytes, size_t size)
 {
     struct write_job *job = png_get_io_ptr(png);
@@ -66,7 +60,7 @@ bool hlh_png_encode(struct hlh_buffer *out, const uint8_t *pixels,
         return false;
     job->out = out;
     job->png = png_create_write_struct(PNG_LIBPNG_VER_STRING, job, stop,
-                                       quiet);
+                                       hlh_png_quiet);
     if (job->png)
         job->info = png_create_info_struct(job->png);
     if (job->info)

@@ -214,7 +214,7 @@ double hlr_alpha(const struct hlr_prepared *p, const struct hlr_ray *ray,
                  const struct hlr_hit *hit);
 void hlr_surface(struct hlr_surface *out, const struct hlr_prepared *p,
                  const struct hlr_ray *ray, const struct hlr_hit *hit,
-                 bool normal_maps);
+                 const struct hlr_options *options);
 
 struct hlr_light_sum { double d[3], s[3]; uint32_t n; };
 void hlr_light_sum(struct hlr_light_sum *out, const struct hlr_lights *lights,

@@ -44,7 +44,7 @@ static void shade(double out[3], struct hlr_surface *s,
                   struct hlr_scratch *scratch)
 {
     const struct hlr_prepared *p = job->p;
-    hlr_surface(s, p, ray, hit, job->o->normal_maps);
+    hlr_surface(s, p, ray, hit, job->o);
     hlr_light_sum(sum, &p->lights, s, unit3(sub3(ray->o, s->position)),
                   job->o->brute_force, scratch);
     for (int k = 0; k < 3; k++)

@@ -44,6 +44,7 @@ struct hlr_options {
                                   * in place of `samples`, up to 64; 0 = off */
     uint32_t threads;            /* at most 256; 0 = the processors online   */
     bool normal_maps;            /* false = as --no-normal-maps              */
+    bool no_specular;            /* ks = 0 everywhere, as --no-specular      */
     bool ids_of_blended;         /* ids name the first surface of any kind;
                                   * false = the first that writes depth      */
     bool brute_force;            /* try every triangle and every light, for
@@ -104,9 +105,9 @@ bool hlr_draw(float *rgb_out, uint32_t *ids_out,
               const struct hlr_prepared *prepared,
               const struct hlr_options *options, struct hlr_stats *stats);
 
-/* Cast the one ray through (x, y) in pixels, centres at half integers; only
- * width, height, normal_maps, near, far and brute_force of the options
- * count. False as hlr_draw. */
+/* Cast the one ray through (x, y) in pixels, centres at half integers; of the
+ * options only width, height, normal_maps, no_specular, near, far and
+ * brute_force count. False as hlr_draw. */
 bool hlr_probe(struct hlr_probe *out, const struct hlr_prepared *prepared,
                const struct hlr_options *options, double x, double y);
 

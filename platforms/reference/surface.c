@@ -178,7 +178,7 @@ static void terms_of(struct hlr_surface *out, const struct hlr_prepared *p,
 
 void hlr_surface(struct hlr_surface *out, const struct hlr_prepared *p,
                  const struct hlr_ray *ray, const struct hlr_hit *hit,
-                 bool normal_maps)
+                 const struct hlr_options *options)
 {
     struct corners c;
     double base[4];
@@ -189,9 +189,11 @@ void hlr_surface(struct hlr_surface *out, const struct hlr_prepared *p,
     out->alpha = c.material->alpha == HLH_ALPHA_BLEND ? base[3] : 1;
     out->position = mix3(hit->b, hit->tri->p[0], hit->tri->p[1],
                          hit->tri->p[2]);
-    out->normal = normal_of(p, &c, hit, &out->uv, normal_maps);
+    out->normal = normal_of(p, &c, hit, &out->uv, options->normal_maps);
     if (c.material->base_texture.image >= 0)
         out->lambda = hlr_chain_lambda(
             &p->chains[2 * c.material->base_texture.image], &out->uv);
     terms_of(out, p, &c, base);
+    if (options->no_specular)
+        memset(out->ks, 0, sizeof out->ks);
 }
