@@ -29,6 +29,8 @@ ALL_LDFLAGS = $(LDFLAGS_$(config)) $(LDFLAGS)
 HOST_CFLAGS := -D_POSIX_C_SOURCE=200809L -pthread
 HOST_LIBS := -lassimp -lcjson -lpng -ljpeg -pthread -lm
 VULKAN_LIBS := -lvulkan
+# GL and EGL are found at run time.
+GL_LIBS := -ldl
 
 lib = $(B)/lib$(1).a
 objs = $(patsubst %.c,$(B)/obj/%.o,$(wildcard $(1)))
@@ -36,14 +38,15 @@ objs = $(patsubst %.c,$(B)/obj/%.o,$(wildcard $(1)))
 HAL := $(call objs,hal/*.c) $(call objs,core/*.c)
 NULLB := $(call objs,platforms/null/*.c)
 VULKAN := $(call objs,platforms/vulkan/*.c) $(B)/obj/gen/hl_spirv.o
+GL := $(call objs,platforms/gl/*.c) $(B)/obj/gen/hl_glsl.o
 HOST := $(call objs,platforms/host/*.c)
 REFERENCE := $(call objs,platforms/reference/*.c)
 CLI_LIB := $(filter-out $(B)/obj/platforms/cli/main.o,$(call objs,platforms/cli/*.c))
 LIST := $(B)/obj/platforms/platforms.o
 
-LIBS := $(call lib,halflight) $(call lib,halflight-null) $(call lib,halflight-vulkan)
+LIBS := $(call lib,halflight) $(call lib,halflight-null) $(call lib,halflight-vulkan) $(call lib,halflight-gl)
 TOOL_LIBS := $(call lib,halflight-cli) $(call lib,halflight-host) $(call lib,halflight-reference) \
-  $(call lib,halflight-list) $(call lib,halflight-vulkan) $(call lib,halflight-null) $(call lib,halflight)
+  $(call lib,halflight-list) $(call lib,halflight-vulkan) $(call lib,halflight-gl) $(call lib,halflight-null) $(call lib,halflight)
 
 .PHONY: all libs tool run test tests check deps clean bench
 all: tool libs
@@ -53,6 +56,7 @@ tool: $(B)/halflight
 $(call lib,halflight): $(HAL)
 $(call lib,halflight-null): $(NULLB)
 $(call lib,halflight-vulkan): $(VULKAN)
+$(call lib,halflight-gl): $(GL)
 $(call lib,halflight-host): $(HOST)
 $(call lib,halflight-reference): $(REFERENCE)
 $(call lib,halflight-cli): $(CLI_LIB)
@@ -64,7 +68,7 @@ $(call lib,halflight-list): $(LIST)
 
 $(B)/halflight: $(B)/obj/platforms/cli/main.o $(TOOL_LIBS)
 	@echo "  LINK $@"
-	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(VULKAN_LIBS) $(HOST_LIBS)
+	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(VULKAN_LIBS) $(GL_LIBS) $(HOST_LIBS)
 
 $(B)/obj/platforms/host/%.o $(B)/obj/platforms/cli/%.o $(B)/obj/platforms/reference/%.o $(B)/obj/tests/%.o: EXTRA := $(HOST_CFLAGS)
 $(B)/obj/%.o: %.c
@@ -76,12 +80,14 @@ $(B)/obj/gen/%.o: $(GEN)/%.c
 	@echo "  CC   $<"
 	$(Q)$(CC) $(ALL_CFLAGS) -MMD -MP -c -o $@ $<
 
-# Shaders: one SPIR-V blob a row of shaders/variants.def, embedded as C.
-$(GEN)/hl_spirv.c: shaders/embed.sh shaders/variants.def $(wildcard shaders/*.vert shaders/*.frag shaders/*.glsl shaders/shared/*.h)
+# Shaders: one SPIR-V blob, and one GLSL text for GL, a row of
+# shaders/variants.def, embedded as C.
+$(GEN)/hl_spirv.c $(GEN)/hl_glsl.c: $(GEN)/hl_%.c: shaders/embed.sh shaders/variants.def $(wildcard shaders/*.vert shaders/*.frag shaders/*.glsl shaders/shared/*.h)
 	@mkdir -p $(GEN)
 	@echo "  GLSL $@"
-	$(Q)sh shaders/embed.sh spirv $@
+	$(Q)sh shaders/embed.sh $* $@
 $(VULKAN): | $(GEN)/hl_spirv.c
+$(GL): | $(GEN)/hl_glsl.c
 
 # Tests: every tests/test_*.c is a cmocka program over all libraries.
 TESTS := $(patsubst tests/%.c,$(B)/tests/%,$(wildcard tests/test_*.c)) $(patsubst tests/%.c,$(B)/tests/%,$(wildcard tests/embed.c))
@@ -90,15 +96,19 @@ tests: $(TESTS)
 $(B)/tests/%: $(B)/obj/tests/%.o $(TEST_LIB) $(TOOL_LIBS)
 	@mkdir -p $(@D)
 	@echo "  LINK $@"
-	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ -lcmocka $(VULKAN_LIBS) $(HOST_LIBS) -ldl
+	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ -lcmocka $(VULKAN_LIBS) $(GL_LIBS) $(HOST_LIBS)
 # Stages of the tests' own, compiled as an engine would: tests/NAME.frag is
-# included as NAME_frag.x.
-TEST_STAGES := $(patsubst tests/%.frag,$(GEN)/%_frag.x,$(wildcard tests/*.frag))
+# included as NAME_frag.x (SPIR-V) and NAME_frag_glsl.x.
+TEST_STAGES := $(foreach x,_frag _frag_glsl,$(patsubst tests/%.frag,$(GEN)/%$(x).x,$(wildcard tests/*.frag)))
 $(GEN)/%_frag.x: tests/%.frag $(wildcard shaders/*.glsl shaders/shared/*.h)
 	@mkdir -p $(GEN)
 	@echo "  GLSL $@"
 	$(Q)glslangValidator -V -g0 --target-env vulkan1.1 -Ishaders -I. -x -o $@ $< > $@.log || \
 	    { cat $@.log; rm -f $@; exit 1; }
+$(GEN)/%_frag_glsl.x: tests/%.frag shaders/embed.sh $(wildcard shaders/*.glsl shaders/shared/*.h)
+	@mkdir -p $(GEN)
+	@echo "  GLSL $@"
+	$(Q)sh shaders/embed.sh stage $@ $<
 $(call objs,tests/*.c): | $(TEST_STAGES)
 $(B)/tests/embed: $(B)/obj/tests/embed.o $(LIBS)
 	@mkdir -p $(@D)

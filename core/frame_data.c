@@ -80,6 +80,13 @@ static bool finite_all(const float *v, int n)
     return true;
 }
 
+static bool material_finite(const struct hl_material *m)
+{
+    return finite_all(m->base, 4) && finite_all(&m->metallic, 1) &&
+           finite_all(&m->roughness, 1) && finite_all(m->emission, 3) &&
+           finite_all(&m->normal_scale, 1) && finite_all(&m->alpha_cutoff, 1);
+}
+
 static enum hl_result check_item(struct hl_renderer *r,
                                  const struct hl_item *it, uint32_t i)
 {
@@ -90,6 +97,8 @@ static enum hl_result check_item(struct hl_renderer *r,
         return refuse(r, "hl_frame.items", i, "material is NULL");
     if (s->own_material && (!it->material_block || !it->material_bytes))
         return refuse(r, "hl_frame.items", i, "material_block is NULL");
+    if (it->material && !material_finite(it->material))
+        return refuse(r, "hl_frame.items", i, "material not finite");
     if (!finite_all(it->world, 16) || !finite_all(it->bounds_min, 3) ||
         !finite_all(it->bounds_max, 3))
         return refuse(r, "hl_frame.items", i, "world or bounds not finite");

@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: Zlib */
 #include <string.h>
+#include "platforms/gl/hl_gl.h"
 #include "platforms/null/hl_null.h"
 #include "platforms/platforms.h"
 #include "platforms/vulkan/hl_vulkan.h"
 
 static const struct hl_backend *const list[] = {
     &hl_backend_vulkan,
+    &hl_backend_gl,
     &hl_backend_null,
 };
 

@@ -37,6 +37,7 @@ arrows includes_hal hal 'hal/|shaders/(shared/|variants\.def)'
 arrows includes_core core 'core/|hal/|shaders/(shared/|variants\.def)'
 arrows includes_null platforms/null "$hal_public|hal/text\.h|platforms/null/|shaders/shared/"
 arrows includes_vulkan platforms/vulkan "$hal_public|platforms/vulkan/|shaders/shared/"
+arrows includes_gl platforms/gl "$hal_public|hal/text\.h|platforms/gl/|shaders/shared/"
 arrows includes_host platforms/host 'platforms/host/'
 arrows includes_reference platforms/reference 'platforms/reference/|platforms/host/scene\.h'
 arrows includes_tool platforms/cli "$hal_public|$core_public|shaders/shared/|platforms/"
@@ -55,7 +56,7 @@ esac
 
 # Libraries neither print, abort, allocate behind the hooks' back nor keep
 # state of their own.
-for lib in halflight halflight-null halflight-vulkan; do
+for lib in halflight halflight-null halflight-vulkan halflight-gl; do
     nm -u "$build/lib$lib.a" | awk -v lib=$lib '$1 == "U" { print lib ": " $2 }'
 done | grep -wE 'f?printf|f?puts|fputc|putchar|fwrite|abort|exit|malloc|calloc|realloc|free|getenv|__assert_fail|stdout|stderr|errno' \
     > "$tmp/out"
@@ -63,7 +64,7 @@ case $build in
 *sanitize*|*coverage*) echo "skip libraries_keep_quiet: instrumented build" ;;
 *) verdict libraries_keep_quiet ;;
 esac
-for lib in halflight halflight-null halflight-vulkan; do
+for lib in halflight halflight-null halflight-vulkan halflight-gl; do
     objdump -h "$build/lib$lib.a" | awk -v lib=$lib '/file format/ { file = $1 }
         ($2 == ".data" || $2 == ".bss") && $3 !~ /^0*$/ { print lib ": " file " " $2 " holds 0x" $3 }'
 done > "$tmp/out"
@@ -75,7 +76,7 @@ esac
 # Every public header alone, as C99 and as C++.
 for h in hal/caps.h hal/hal.h hal/backend.h core/needs.h core/plan.h core/scene.h core/frame.h \
     core/mesh.h core/ids.h core/halflight.h platforms/platforms.h platforms/null/hl_null.h \
-    platforms/vulkan/hl_vulkan.h; do
+    platforms/vulkan/hl_vulkan.h platforms/gl/hl_gl.h; do
     echo "#include \"$h\"" > "$tmp/h.c"
     ${CC:-gcc} -std=c99 -pedantic -Wall -Wextra -Wconversion -Werror -I. -fsyntax-only "$tmp/h.c" \
         2>> "$tmp/alone"

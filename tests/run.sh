@@ -20,7 +20,9 @@ for icd in /usr/share/vulkan/icd.d/lvp_icd*.json; do
     [ -f "$icd" ] && export VK_DRIVER_FILES="${VK_DRIVER_FILES:-$icd}"
 done
 [ -n "${XDG_RUNTIME_DIR:-}" ] || export XDG_RUNTIME_DIR="$tmp"
-export MESA_SHADER_CACHE_DIR="${MESA_SHADER_CACHE_DIR:-$build/shader-cache}"
+# Absolute: some cases run elsewhere.
+export MESA_SHADER_CACHE_DIR="${MESA_SHADER_CACHE_DIR:-$(cd "$build" && pwd)/shader-cache}"
+mkdir -p "$MESA_SHADER_CACHE_DIR"
 export HL_TOOL="${HL_TOOL:-$build/halflight}"
 export ASAN_OPTIONS="${ASAN_OPTIONS:-allocator_may_return_null=1:detect_leaks=0}"
 

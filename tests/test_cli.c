@@ -97,8 +97,10 @@ static void no_backend_or_device_is_exit_three(void **state)
         { "render thin --backend bogus --out x.png", "no such backend" },
         { "plan thin --backend bogus", "no such backend" },
         { "devices --backend bogus", "no such backend" },
-        { "render thin --out x.png --json x.json", "no backend has a device" },
-        { "plan thin --json x.json", "no backend has a device" },
+        { "render thin --device none --json x.json", "--device none: " },
+        { "plan thin --device none --json x.json", "--device none: " },
+        { "render thin --backend gl --gl-context egl --device none",
+          "--device none: " },
         { "render thin --backend vulkan --out x.png", "vulkan: " },
         { "devices --backend vulkan --json x.json", "--backend vulkan: " },
     };

@@ -193,6 +193,16 @@ static void bad_items_and_cameras_are_named(void **state)
     BAD(item[0].world[7] = NAN, "hl_frame.items 0: world");
     BAD(item[0].bounds_max[2] = INFINITY, "hl_frame.items 0: world or bounds");
     BAD(item[1].bounds_min[0] = NAN, "hl_frame.items 1: world or bounds");
+    for (int k = 0; k < 11; k++) {
+        struct hl_material rough = s.material[1];
+        float *const field[11] = {
+            &rough.base[0], &rough.base[1], &rough.base[2], &rough.base[3],
+            &rough.metallic, &rough.roughness, &rough.emission[0],
+            &rough.emission[1], &rough.emission[2], &rough.normal_scale,
+            &rough.alpha_cutoff };
+        *field[k] = k % 2 ? NAN : INFINITY;
+        BAD(item[1].material = &rough, "hl_frame.items 1: material not");
+    }
     BAD(bad.items = NULL, "NULL");
     BAD(bad.camera.near = 0, "hl_frame.camera");
     BAD(bad.camera.near = NAN, "hl_frame.camera");
@@ -501,6 +511,39 @@ static void long_passes_are_split(void **state)
     free(items);
 }
 
+/* Every size and ratio has whole targets, tiles to their edges and capacity
+ * for its lists. */
+static void odd_sizes_are_sizes(void **state)
+{
+    (void)state;
+    struct ck_machine m;
+    uint64_t seed = 3;
+    assert_true(ck_open(&m, "null", NULL));
+    struct fk_scene s;
+    fk_begin(&s, &m);
+    fk_room(&s, 12, &seed);
+    for (uint32_t w = 1; w <= 67; w += 3)
+        for (uint32_t h = 1; h <= 67; h += 6)
+            for (int path = HL_LIGHT_PATH_RECTS; path <= HL_LIGHT_PATH_LISTS;
+                 path++) {
+                struct fk_run run;
+                s.needs.width = w;
+                s.needs.height = h;
+                s.needs.light_width = (w * h + 11) % 67 + 1;
+                s.needs.light_height = (w + h * 7) % 67 + 1;
+                s.needs.tile = 8 + (w * 5 + h) % 60;
+                s.needs.light_path = (enum hl_light_path)path;
+                fk_prepare(&run, &s, HL_PIPELINE_INFERRED);
+                run.desc.frame_bytes = 1 << 18;
+                run.desc.list_bytes = 1 << 18;
+                assert_int_equal(fk_create(&run), HL_OK);
+                assert_int_equal(hl_frame_draw(run.r, &s.frame, NULL), HL_OK);
+                fk_destroy(&run);
+            }
+    fk_end(&s);
+    ck_close(&m);
+}
+
 static void statistics_count(void **state)
 {
     struct fk_scene s;
@@ -537,7 +580,8 @@ static void statistics_count(void **state)
     fk_end(&s);
 }
 
-#define BOTH(name) CK_ON("null", name), CK_ON("vulkan", name)
+#define BOTH(name) \
+    CK_ON("null", name), CK_ON("vulkan", name), CK_ON("gl", name)
 
 int main(void)
 {
@@ -554,6 +598,7 @@ int main(void)
         cmocka_unit_test(any_call_may_fail),
         cmocka_unit_test(passes_are_the_plans),
         cmocka_unit_test(long_passes_are_split),
+        cmocka_unit_test(odd_sizes_are_sizes),
         BOTH(statistics_count),
     };
     return cmocka_run_group_tests_name("frames", tests, NULL, NULL);

@@ -576,7 +576,7 @@ static void rejected_taps_are_seen(void **state)
     fk_end(&s);
 }
 
-#define DRAWN(name) CK_ON("vulkan", name)
+#define DRAWN(name) CK_ON("vulkan", name), CK_ON("gl", name)
 
 int main(void)
 {

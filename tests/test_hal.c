@@ -523,28 +523,29 @@ static void closing_destroys_what_is_left(void **state)
     /* The teardown closes the device and counts what is left. */
 }
 
-#define BOTH(name) CK_ON("null", name), CK_ON("vulkan", name)
+#define ALL(name) \
+    CK_ON("null", name), CK_ON("vulkan", name), CK_ON("gl", name)
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        BOTH(a_device_needs_hooks_a_version_and_a_backend),
-        BOTH(devices_are_listed_and_counted),
+        ALL(a_device_needs_hooks_a_version_and_a_backend),
+        ALL(devices_are_listed_and_counted),
         cmocka_unit_test(results_have_names_of_their_own),
         cmocka_unit_test(formats_have_rows_and_nonsense_has_none),
-        BOTH(buffers_are_checked),
-        BOTH(buffer_writes_stay_inside),
-        BOTH(texture_sizes_are_checked),
-        BOTH(texture_levels_and_samples_are_checked),
-        BOTH(texture_formats_are_checked),
-        BOTH(zero_is_the_default_of_a_texture),
-        BOTH(texture_writes_are_whole_levels),
-        BOTH(texture_reads_need_readback_and_their_bytes),
-        BOTH(program_stages_are_checked),
-        BOTH(program_states_are_checked),
-        BOTH(program_targets_are_checked),
-        BOTH(stale_handles_are_refused_not_followed),
-        BOTH(closing_destroys_what_is_left),
+        ALL(buffers_are_checked),
+        ALL(buffer_writes_stay_inside),
+        ALL(texture_sizes_are_checked),
+        ALL(texture_levels_and_samples_are_checked),
+        ALL(texture_formats_are_checked),
+        ALL(zero_is_the_default_of_a_texture),
+        ALL(texture_writes_are_whole_levels),
+        ALL(texture_reads_need_readback_and_their_bytes),
+        ALL(program_stages_are_checked),
+        ALL(program_states_are_checked),
+        ALL(program_targets_are_checked),
+        ALL(stale_handles_are_refused_not_followed),
+        ALL(closing_destroys_what_is_left),
     };
     return cmocka_run_group_tests_name("hal", tests, NULL, NULL);
 }

@@ -9,6 +9,9 @@
 static const uint32_t solid_spirv[] = {
 #include "solid_frag.x"
 };
+static const char solid_glsl[] = {
+#include "solid_frag_glsl.x"
+};
 
 enum { W = 8, H = 4, SLOT = 256 };
 
@@ -46,7 +49,7 @@ static hl_buf buf(struct ck_machine *m, size_t bytes, uint32_t usage)
 static struct hl_prog_desc solid(void)
 {
     static const struct hl_code code = { solid_spirv, sizeof solid_spirv,
-                                         NULL, NULL };
+                                         solid_glsl, NULL };
     struct hl_prog_desc p = {
         .label = "solid", .vertex = { HL_SHADER_SCREEN_VERT, NULL },
         .fragment = { HL_SHADER_NONE, &code }, .n_colors = 1,
@@ -542,20 +545,20 @@ static void targets_are_kept_or_cleared(void **state)
         assert_true(z[i] == 0.375f);
 }
 
-#define BOTH(name) CK_ON("null", name), CK_ON("vulkan", name)
-#define DRAWN(name) CK_ON("vulkan", name)
+#define DRAWN(name) CK_ON("vulkan", name), CK_ON("gl", name)
+#define ALL(name) CK_ON("null", name), DRAWN(name)
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        BOTH(targets_are_checked),
-        BOTH(resolves_are_checked),
-        BOTH(programs_fit_their_pass),
-        BOTH(draws_stay_inside_their_indices),
-        BOTH(ranges_are_checked),
-        BOTH(textures_are_checked),
-        BOTH(the_refused_draw_is_named),
-        BOTH(empty_draws_are_left_out),
+        ALL(targets_are_checked),
+        ALL(resolves_are_checked),
+        ALL(programs_fit_their_pass),
+        ALL(draws_stay_inside_their_indices),
+        ALL(ranges_are_checked),
+        ALL(textures_are_checked),
+        ALL(the_refused_draw_is_named),
+        ALL(empty_draws_are_left_out),
         DRAWN(a_scissor_cuts_and_is_cut),
         DRAWN(blending_is_as_stated),
         DRAWN(draws_see_their_own_ranges),

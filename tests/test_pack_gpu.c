@@ -13,6 +13,9 @@
 static const uint32_t pack_spirv[] = {
 #include "pack_frag.x"
 };
+static const char pack_glsl[] = {
+#include "pack_frag_glsl.x"
+};
 
 enum { SIDE = 256, N = SIDE * SIDE };
 
@@ -74,7 +77,7 @@ static void draw(struct bench *b, uint32_t what, enum hl_format format,
                  hl_tex target, hl_tex second)
 {
     struct hl_device *d = b->m->device;
-    struct hl_code code = { pack_spirv, sizeof pack_spirv, NULL, NULL };
+    struct hl_code code = { pack_spirv, sizeof pack_spirv, pack_glsl, NULL };
     struct hl_prog_desc p = {
         .label = "pack", .vertex = { HL_SHADER_SCREEN_VERT, NULL },
         .fragment = { HL_SHADER_NONE, &code }, .spec = { { 0, what } },
@@ -436,7 +439,7 @@ static void ids_survive_the_target(void **state)
     end(b);
 }
 
-#define TEST(name) CK_ON("vulkan", name)
+#define TEST(name) CK_ON("vulkan", name), CK_ON("gl", name)
 
 int main(void)
 {

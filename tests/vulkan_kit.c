@@ -7,6 +7,9 @@
 static const uint32_t frag_spirv[] = {
 #include "vulkan_frag.x"
 };
+static const char frag_glsl[] = {
+#include "vulkan_frag_glsl.x"
+};
 
 const struct vertex vt_quad[6] = {
     { { -1, -1, 0.5f }, { 0, 0 } }, { { -1, 1, 0.5f }, { 0, 1 } },
@@ -78,8 +81,8 @@ struct rig vt_rig(void **state)
 
 struct hl_prog_desc vt_prog_desc(uint32_t what)
 {
-    static const struct hl_code code = { frag_spirv, sizeof frag_spirv, NULL,
-                                         NULL };
+    static const struct hl_code code = { frag_spirv, sizeof frag_spirv,
+                                         frag_glsl, NULL };
     struct hl_prog_desc p = {
         .vertex = { HL_SHADER_MESH_OWN_VERT, NULL },
         .fragment = { HL_SHADER_NONE, &code },

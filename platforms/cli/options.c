@@ -13,7 +13,7 @@ enum kind {                  /* how a value is read and where it goes        */
     FLAG, TEXT, COUNT, REAL, SIZE,               /* straight into the member */
     BACKEND, PROFILE, PIPELINE, SAMPLES, CAMERA, AMBIENT, BACKGROUND,
     LIGHTS_MODE, DSF, LIGHT_PATH, TILE_DEPTH, SCISSOR, IDS_SCHEME,
-    LIGHT_FORMAT, MIN_PSNR, MAX_ERROR
+    LIGHT_FORMAT, MIN_PSNR, MAX_ERROR, GL_CONTEXT
 };
 
 #define R (1u << HLC_RENDER)
@@ -38,6 +38,8 @@ static const struct row rows[] = {
       "default: the first that has a device" },
     { "device", "N|NAME", TEXT, R | P, AT(device), 0, 0,
       "index or part of a name, see 'halflight devices'" },
+    { "gl-context", "osmesa|egl", GL_CONTEXT, R | P, 0, 0, 0,
+      "of --backend gl; default: osmesa, then egl" },
     { "validation", NULL, FLAG, R | P, AT(validation), 0, 0,
       "driver validation layers" },
     { "profile", "native|dx10|xbox360|ps3", PROFILE, R | P, 0, 0, 0,
@@ -271,6 +273,7 @@ static int take_word(struct hlc_options *o, const struct row *r,
         o->reference = i == HL_PIPELINE_COUNT;
         o->pipeline = o->reference ? HL_PIPELINE_AUTO : (enum hl_pipeline)i;
         return 0;
+    case GL_CONTEXT: o->gl_context = i ? "egl" : "osmesa"; return 0;
     case SAMPLES: o->samples = 1u << i; return 0;
     case LIGHTS_MODE: o->lights_replace = i == 1; return 0;
     case DSF: o->dsf = (enum hl_dsf)i; return 0;

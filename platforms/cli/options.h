@@ -31,6 +31,7 @@ struct hlc_options {
     const char *backend;     /* a name hl_platform_find knows; NULL: the
                               * first that has a device                      */
     const char *device;      /* as hl_device_desc.device; NULL: best         */
+    const char *gl_context;  /* "osmesa", "egl"; NULL: whichever there is    */
     bool validation;
 
     /* picture */

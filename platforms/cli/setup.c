@@ -4,6 +4,7 @@
 #include <string.h>
 #include "platforms/cli/commands.h"
 #include "platforms/cli/plan_text.h"
+#include "platforms/gl/hl_gl.h"
 #include "platforms/platforms.h"
 
 /* ---- scene ------------------------------------------------------------- */
@@ -60,10 +61,12 @@ static enum hl_result open_on(struct hlc_machine *m,
                               const struct hl_backend *backend,
                               const struct hlc_options *o)
 {
+    const struct hl_gl_native gl = { o->gl_context, NULL };
     struct hl_device_desc d;
     memset(&d, 0, sizeof d);
     d.version = HL_VERSION;
     d.hooks = hlc_hooks();
+    d.native = backend == &hl_backend_gl ? &gl : NULL;
     d.log = listen;
     d.log_user = m;
     d.device = o->device;
