@@ -7,6 +7,13 @@
 #include <string.h>
 #include "tests/frame_kit.h"
 
+static const uint32_t solid_spirv[] = {
+#include "solid_frag.x"
+};
+static const char solid_glsl[] = {
+#include "solid_frag_glsl.x"
+};
+
 enum { N = FK_W * FK_H, MID_X = FK_W / 2, MID_Y = FK_H / 2 };
 
 /* A half float keeps 11 bits and lavapipe cuts the rest: 2^-10 of a value. */
@@ -413,22 +420,79 @@ static void move(struct fk_scene *s, int frame)
     const float target[3] = { 0, 0, 0 };
     assert_int_equal(hl_camera_look_at(&s->frame.camera, eye, target, 60,
                                        0.1f, 100), HL_OK);
-    s->light[frame].radius = 6;
+    s->light[0].radius = 3 + (float)frame;
 }
 
-static float *last_of(struct fk_scene *s, enum hl_pipeline pipeline, bool wait)
+/* Adds each frame to what came before, on the device: the only way to see
+ * frames that are never waited for. */
+struct sum {
+    hl_tex tex;
+    hl_prog prog;
+    hl_buf one, zero;
+};
+
+static void sum_begin(struct sum *u, struct fk_scene *s)
 {
+    static const struct hl_code code = { solid_spirv, sizeof solid_spirv,
+                                         solid_glsl, NULL };
+    const float one[4] = { 1, 1, 1, 1 }, zero[4] = { 0, 0, 0, 0 };
+    struct hl_device *d = s->m->device;
+    struct hl_tex_desc t = { .format = HL_FORMAT_RGBA32_FLOAT, .width = FK_W,
+                             .height = FK_H,
+                             .usage = HL_TEX_TARGET | HL_TEX_READBACK };
+    struct hl_prog_desc p = {
+        .vertex = { HL_SHADER_SCREEN_VERT, NULL },
+        .fragment = { HL_SHADER_NONE, &code }, .n_colors = 1,
+        .color = { HL_FORMAT_RGBA32_FLOAT }, .blend = HL_BLEND_ADD };
+    struct hl_buf_desc a = { "one", 16, HL_BUF_UNIFORM, false, one };
+    struct hl_buf_desc b = { "zero", 16, HL_BUF_STORAGE, false, zero };
+    assert_int_equal(hl_tex_create(d, &u->tex, &t), HL_OK);
+    assert_int_equal(hl_prog_create(d, &u->prog, &p), HL_OK);
+    assert_int_equal(hl_buf_create(d, &u->one, &a), HL_OK);
+    assert_int_equal(hl_buf_create(d, &u->zero, &b), HL_OK);
+}
+
+static void sum_add(struct sum *u, struct hl_device *d, hl_tex frame,
+                    bool first)
+{
+    struct hl_texture_binding texture = { .tex = frame };
+    struct hl_draw draw = { .prog = u->prog, .count = 3,
+                            .uniform = { { u->one, 0, 16 } },
+                            .storage = { { u->zero, 0, 16 } },
+                            .textures = &texture, .n_textures = 1 };
+    struct hl_pass pass = { .n_colors = 1, .draws = &draw, .n_draws = 1 };
+    pass.color[0].tex = u->tex;
+    pass.color[0].load = first ? HL_LOAD_CLEAR : HL_LOAD_KEEP;
+    assert_int_equal(hl_pass_run(d, &pass), HL_OK);
+}
+
+static void sum_end(struct sum *u, struct hl_device *d)
+{
+    hl_tex_destroy(d, &u->tex);
+    hl_prog_destroy(d, &u->prog);
+    hl_buf_destroy(d, &u->one);
+    hl_buf_destroy(d, &u->zero);
+}
+
+static float *sum_of_frames(struct fk_scene *s, enum hl_pipeline pipeline,
+                            bool wait)
+{
+    enum { COUNT = 7 };
     struct fk_run run;
-    enum { FRAMES = 7 };
+    struct sum u;
+    struct hl_device *d = s->m->device;
     move(s, 0);
     fk_prepare(&run, s, pipeline);
     assert_int_equal(fk_create(&run), HL_OK);
-    for (int i = 0; i < FRAMES; i++) {
+    sum_begin(&u, s);
+    for (int i = 0; i < COUNT; i++) {
         move(s, i);
         assert_int_equal(hl_frame_draw(run.r, &s->frame, NULL), HL_OK);
-        assert_int_equal(hl_submit(s->m->device, wait), HL_OK);
+        sum_add(&u, d, hl_renderer_output(run.r), i == 0);
+        assert_int_equal(hl_submit(d, wait), HL_OK);
     }
-    float *f = ck_read(s->m->device, hl_renderer_output(run.r), NULL, NULL);
+    float *f = ck_read(d, u.tex, NULL, NULL);
+    sum_end(&u, d);
     fk_destroy(&run);
     return f;
 }
@@ -446,8 +510,8 @@ static void frames_in_flight_do_not_mix(void **state)
             fk_add(&s, FK_BALL, FK_BLENDED, 0, 0, 4, 1);
             s.needs.light_path = paths[k];
             s.needs.no_tile_depth = true;       /* it would wait each frame  */
-            float *flying = last_of(&s, (enum hl_pipeline)p, false);
-            float *waited = last_of(&s, (enum hl_pipeline)p, true);
+            float *flying = sum_of_frames(&s, (enum hl_pipeline)p, false);
+            float *waited = sum_of_frames(&s, (enum hl_pipeline)p, true);
             assert_memory_equal(flying, waited, N * 16);
             free(flying);
             free(waited);

@@ -134,8 +134,14 @@ static void every_machine_call_may_fail(void **state)
     for (;; n++) {
         struct life l;
         memset(&l, 0, sizeof l);
+        memset(&m, 0, sizeof m);
         native.fail_at = n + 1;
-        assert_true(ck_open(&m, "null", &native));
+        struct hl_device_desc d = ck_desc(&m);
+        d.native = &native;
+        d.max_buffers = d.max_programs = 1;      /* no slot to lose          */
+        d.max_textures = 2;
+        assert_int_equal(hl_device_open(&m.device, &hl_backend_null, &d),
+                         HL_OK);
         l.d = m.device;
         enum hl_result r = live(&l);
         struct life made = l;

@@ -196,9 +196,10 @@ static void read_regions(struct ik_stage *s, struct hl_renderer *r, void *user)
 }
 
 static void look_at_regions(struct regions *out, struct ck_machine *m,
-                            const char *scene, enum hlc_ids_scheme scheme)
+                            const char *scene, enum hlc_ids_scheme scheme,
+                            uint32_t seed)
 {
-    struct hlc_world_options o = { .ids = scheme };
+    struct hlc_world_options o = { .ids = scheme, .ids_seed = seed };
     struct ik_stage s;
     ik_begin(&s, m, scene, W, H, &o);
     s.options.light_width = W;
@@ -245,6 +246,31 @@ static struct shared count_shared(const struct regions *truth,
     return n;
 }
 
+/* The paper's random ids over SEEDS drawings of the bytes: one in sight of a
+ * few hundred regions is luck, the share over many is the scheme's. */
+enum { SEEDS = 24 };
+
+static void published_ids_collide(const struct regions *truth,
+                                  struct regions *stored,
+                                  struct ck_machine *m, const char *scene)
+{
+    uint32_t shared = 0, pairs = 0, seeds = 0;
+    for (uint32_t k = 0; k < SEEDS; k++) {
+        char name[32];
+        snprintf(name, sizeof name, "as published, seed %u", k);
+        look_at_regions(stored, m, scene, HLC_IDS_PAPER, k);
+        struct shared n = count_shared(truth, stored, FAR_OFF, scene, name);
+        shared += n.objects + n.groups;
+        seeds += n.objects + n.groups > 0;
+        pairs += n.pairs;
+    }
+    print_message("%s as published: %u of %u neighbours share an id, %.4f %%,"
+                  " in %u of %d drawings\n", scene, shared, pairs,
+                  100.0 * shared / pairs, seeds, SEEDS);
+    assert_true(shared > 0);
+    assert_true(shared < pairs / 50);
+}
+
 /* Unique ids never collide. The paper's do where two random bytes are equal
  * for two objects of one mesh, 1 of 256 of those (conformance b5), or for two
  * groups of one. Coloured ones may, but for objects so near each other that
@@ -259,23 +285,18 @@ static void stored_ids_tell_neighbours_apart(void **state)
     static const char *const scenes[] = { "fig7", "many" };
     static struct regions truth, stored;
     struct ck_machine *m = ck_machine(state);
-    uint32_t published = 0;
     for (int i = 0; i < 2; i++) {
         const char *scene = scenes[i];
-        look_at_regions(&truth, m, scene, HLC_IDS_UNIQUE);
+        look_at_regions(&truth, m, scene, HLC_IDS_UNIQUE, 0);
         struct shared n = count_shared(&truth, &truth, FAR_OFF, scene,
                                        "unique");
         assert_int_equal(n.objects + n.groups, 0);
-        look_at_regions(&stored, m, scene, HLC_IDS_COLORED);
+        look_at_regions(&stored, m, scene, HLC_IDS_COLORED, 0);
         n = count_shared(&truth, &stored, stored.near, scene, "coloured");
         assert_int_equal(n.objects, 0);
         assert_true(n.groups <= n.pairs / 100);
-        look_at_regions(&stored, m, scene, HLC_IDS_PAPER);
-        n = count_shared(&truth, &stored, FAR_OFF, scene, "as published");
-        published += n.objects + n.groups;
-        assert_true(n.objects + n.groups < n.pairs / 50);
+        published_ids_collide(&truth, &stored, m, scene);
     }
-    assert_true(published > 0);
 }
 
 /* The background stores 0, which is no region's id. */
@@ -283,7 +304,7 @@ static void the_background_has_id_zero(void **state)
 {
     static struct regions g;
     struct ck_machine *m = ck_machine(state);
-    look_at_regions(&g, m, "fig7", HLC_IDS_UNIQUE);
+    look_at_regions(&g, m, "fig7", HLC_IDS_UNIQUE, 0);
     for (int i = 0; i < W * H; i++)
         assert_true((g.truth[i] == 0) == (g.stored[i][1] == 0));
 }

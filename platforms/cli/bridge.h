@@ -16,6 +16,7 @@ struct hlc_world_options {
     bool no_normal_maps;
     bool no_specular;            /* every material drops ks S                */
     enum hlc_ids_scheme ids;
+    uint32_t ids_seed;           /* of HLC_IDS_PAPER; any number             */
 };
 
 /* How regions were numbered. Collisions: neighbouring regions that share an

@@ -173,9 +173,9 @@ static enum hl_result number_colored(struct hlc_bridge *b, uint32_t *base)
 
 /* The shader adds group to base, so hl_ids_paper_region's two exceptions (0
  * and 65,535) hold by moving the bases of objects 0 and 255 by one. */
-static uint32_t paper_base(uint32_t item)
+static uint32_t paper_base(uint64_t stream, uint32_t item)
 {
-    uint32_t base = (uint32_t)hl_ids_random8(0, item) << 8;
+    uint32_t base = (uint32_t)hl_ids_random8(stream, item) << 8;
     return base == 0 ? 1 : base == 65280 ? 65279 : base;
 }
 
@@ -184,16 +184,18 @@ static enum hl_result number_paper(struct hlc_bridge *b)
     struct hlc_world *w = b->world;
     struct meetings meet = { NULL, 0 };
     enum hl_result r = find_meetings(b, &meet);
+    /* Stream 0 of a seed numbers the objects, i + 1 the groups of mesh i. */
+    uint64_t seed = (uint64_t)b->options->ids_seed << 32;
     for (uint32_t i = 0; i < b->scene->n_meshes; i++) {
         struct hlc_part *p = &b->parts[i];
         for (uint32_t g = 0; p->used && g < p->prep.n_groups; g++)
-            p->code[g] = hl_ids_random8(i + UINT64_C(1), g);
+            p->code[g] = hl_ids_random8(seed + i + 1, g);
     }
     w->ids.scheme = "paper";
     w->ids.highest = 65534;
     for (uint32_t i = 0; i < w->n_items; i++) {
         const struct hlc_part *p = part_of(b, i);
-        w->items[i].id_base = paper_base(i);
+        w->items[i].id_base = paper_base(seed, i);
         w->ids.collisions += hl_ids_count_shared(p->prep.pairs,
                                                  p->prep.n_pairs, p->code);
     }

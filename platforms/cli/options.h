@@ -68,6 +68,7 @@ struct hlc_options {
     enum hl_dsf dsf;                 /* AUTO                                 */
     double dsf_k, dsf_c, dsf_tau;    /* 0 = planner's                        */
     enum hlc_ids_scheme ids_scheme;
+    uint32_t ids_seed;       /* of HLC_IDS_PAPER's random numbers            */
     enum hl_format light_format;     /* NONE = planner's                     */
 
     /* --max-error: of a plan in 8-bit sRGB codes, of compare the largest

@@ -112,7 +112,7 @@ int hlc_world_open(struct hlc_world *out, const struct hlc_machine *machine,
                    const struct hlh_scene *scene, const struct hlc_options *o)
 {
     struct hlc_world_options w = { o->no_normal_maps, o->no_specular,
-                                   o->ids_scheme };
+                                   o->ids_scheme, o->ids_seed };
     struct hlh_error error;
     const char *more = machine->complaint;
     if (hlc_world_create(out, machine->device, scene, &w, &error))
