@@ -2,6 +2,7 @@
 /* A renderer's memory, targets and programs. */
 #include <string.h>
 #include "core/renderer.h"
+#include "hal/backend.h"
 
 /* ---- memory ------------------------------------------------------------- */
 
@@ -353,10 +354,22 @@ static enum hl_result make_light_programs(struct hl_renderer *r)
     return HL_OK;
 }
 
+/* A stage of the embedder's own reads inferred light: forward pipelines have
+ * none for it, and would read its block as if it were theirs. */
+static enum hl_result refuse_own(struct hl_renderer *r)
+{
+    hl_bk_log(r->device, HL_LOG_ERROR, HL_MSG_ARGUMENT,
+              "hl_surface.own_material", ": needs the inferred pipeline",
+              NULL);
+    return HL_ERR_UNSUPPORTED;
+}
+
 static enum hl_result make_surface_programs(struct hl_renderer *r, uint32_t i)
 {
     bool inferred = r->plan.pipeline == HL_PIPELINE_INFERRED;
     int first = inferred ? PROG_GBUFFER : PROG_BASE;
+    if (r->surfaces[i].own_material && !inferred)
+        return refuse_own(r);
     if (r->surfaces[i].blended)
         return hl_surface_program(r, i, PROG_BLENDED,
                                   &r->prog[i][PROG_BLENDED]);

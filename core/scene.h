@@ -54,7 +54,8 @@ struct hl_surface {
     bool mirrored;           /* model-to-world determinant is negative       */
     /* A material fragment stage of the embedder's own for the inferred
      * pipeline (include shaders/inferred.glsl), or NULL. It writes location
-     * 0. Its items bring material_block for uniform slot 2. */
+     * 0. Its items bring material_block for uniform slot 2; textures and
+     * masked are 0. Forward plans refuse it (HL_ERR_UNSUPPORTED). */
     const struct hl_code *own_material;
 };
 

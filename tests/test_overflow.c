@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Zlib */
 /* What once went wrong and must not again: capacities that run out in the
- * middle of a split pass, a peak that no fixed range can hold. */
+ * middle of a split pass, a peak that no fixed range can hold, a stage that a
+ * plan cannot serve. */
 #include <string.h>
 #include "tests/frame_kit.h"
 
@@ -64,11 +65,34 @@ static void no_fixed_range_for_inverse_square(void **state)
     fk_end(&s);
 }
 
+/* An embedder's stage reads inferred light, which a forward plan has not. */
+static void own_materials_need_inferred_light(void **state)
+{
+    static const uint32_t words[4];
+    const struct hl_code code = { .spirv = words,
+                                  .spirv_bytes = sizeof words };
+    const enum hl_pipeline pipelines[] = { HL_PIPELINE_FORWARD,
+                                           HL_PIPELINE_FORWARD_MULTIPASS,
+                                           HL_PIPELINE_INFERRED };
+    struct ck_machine *m = ck_machine(state);
+    for (int i = 0; i < 3; i++) {
+        struct fk_scene s;
+        struct fk_run run;
+        fk_begin(&s, m);
+        s.surface[FK_PLAIN].own_material = &code;
+        fk_prepare(&run, &s, pipelines[i]);
+        assert_int_equal(fk_create(&run), i < 2 ? HL_ERR_UNSUPPORTED : HL_OK);
+        fk_destroy(&run);
+        fk_end(&s);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         CK_ON("null", data_runs_out_in_a_split_pass),
         CK_ON("vulkan", data_runs_out_in_a_split_pass),
+        CK_ON("null", own_materials_need_inferred_light),
         CK_ON("null", no_fixed_range_for_inverse_square),
     };
     return cmocka_run_group_tests_name("overflow", tests, NULL, NULL);
