@@ -79,6 +79,10 @@ struct hl_backend {
  * counter behind hl_device_validation_errors. */
 void *hl_bk_alloc(struct hl_device *, size_t bytes);   /* zeroed             */
 void hl_bk_free(struct hl_device *, void *);
+/* Grow the array kept in *array (NULL with *max 0 at first) to at least `need`
+ * items, contents kept; false: out of memory, nothing changed. */
+bool hl_bk_grow(struct hl_device *, void *array, uint32_t *max, uint32_t need,
+                size_t item);
 /* text is joined from up to three parts (NULL ends). */
 void hl_bk_log(struct hl_device *, enum hl_log_level, enum hl_log_id,
                const char *a, const char *b, const char *c);

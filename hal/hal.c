@@ -78,6 +78,27 @@ void hl_bk_free(struct hl_device *d, void *p)
         d->hooks.free(d->hooks.user, p);
 }
 
+bool hl_bk_grow(struct hl_device *d, void *array, uint32_t *max, uint32_t need,
+                size_t item)
+{
+    uint32_t more = *max ? *max : 16;
+    void *old;
+    if (need <= *max)
+        return true;
+    while (more < need)
+        more *= 2;
+    memcpy(&old, array, sizeof old);
+    void *grown = hl_bk_alloc(d, more * item);
+    if (!grown)
+        return false;
+    if (old)
+        memcpy(grown, old, *max * item);
+    hl_bk_free(d, old);
+    memcpy(array, &grown, sizeof grown);
+    *max = more;
+    return true;
+}
+
 /* ---- pools -------------------------------------------------------------- */
 
 static bool pool_open(struct hl_device *d, struct hl_pool *p, uint32_t max)

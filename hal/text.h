@@ -11,6 +11,4 @@ struct hl_text { char *at; size_t left; };
 struct hl_text hl_text_begin(char *buffer, size_t bytes);
 void hl_text_str(struct hl_text *, const char *);
 void hl_text_uint(struct hl_text *, uint64_t);
-/* Fixed point with `decimals` (0..9) digits; "nan", "inf" as they are. */
-void hl_text_real(struct hl_text *, double, int decimals);
 #endif

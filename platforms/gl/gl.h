@@ -133,9 +133,6 @@ struct hlgl {
 enum hl_result hlgl_enter(struct hlgl *);
 /* HL_OK, or GL's error since the last call, logged under `what`. */
 enum hl_result hlgl_check(struct hlgl *, const char *what);
-/* Grow an array kept in *array to at least `need` items: contents kept. */
-bool hlgl_grow(struct hlgl *, void *array, uint32_t *max, uint32_t need,
-               size_t item);
 void hlgl_label(struct hlgl *, GLenum kind, GLuint name, const char *label);
 
 /* gl_caps.c */

@@ -29,27 +29,6 @@ enum hl_result hlgl_check(struct hlgl *g, const char *what)
     return r;
 }
 
-bool hlgl_grow(struct hlgl *g, void *array, uint32_t *max, uint32_t need,
-               size_t item)
-{
-    uint32_t more = *max ? *max : 16;
-    void *old;
-    if (need <= *max)
-        return true;
-    while (more < need)
-        more *= 2;
-    memcpy(&old, array, sizeof old);
-    void *grown = hl_bk_alloc(g->device, more * item);
-    if (!grown)
-        return false;
-    if (old)
-        memcpy(grown, old, *max * item);
-    hl_bk_free(g->device, old);
-    memcpy(array, &grown, sizeof grown);
-    *max = more;
-    return true;
-}
-
 void hlgl_label(struct hlgl *g, GLenum kind, GLuint name, const char *label)
 {
     enum { MOST = 64 };      /* GL takes 256 at least                        */
@@ -143,7 +122,7 @@ hlgl_function hlgl_symbol(const struct hlgl_context *c, const char *name)
     return f;
 }
 
-/* OSMesa gives a stub for a name it does not know: only the version, asked
+/* OSMesa gives an address for any name, known or not: only the version, asked
  * below, says what there is. */
 static bool load(const struct hlgl_context *c, struct hlgl_api *gl)
 {

@@ -303,9 +303,9 @@ static enum hl_result reserve_query(struct hlgl *g, struct hlgl_frame *f)
     uint32_t need = f->n_passes + 1;
     if (!g->timestamps)
         return HL_OK;
-    if (!hlgl_grow(g, &f->queries, &f->max_queries, need,
+    if (!hl_bk_grow(g->device, &f->queries, &f->max_queries, need,
                    sizeof *f->queries) ||
-        !hlgl_grow(g, &f->labels, &f->max_labels, need, sizeof *f->labels))
+        !hl_bk_grow(g->device, &f->labels, &f->max_labels, need, sizeof *f->labels))
         return HL_ERR_MEMORY;
     if (need > f->n_queries) {
         g->gl.CreateQueries(GL_TIMESTAMP, 1, &f->queries[f->n_queries]);
@@ -375,7 +375,7 @@ static void read_timings(struct hlgl *g, const struct hlgl_frame *f,
 {
     GLuint64 from = (GLuint64)f->began;
     g->n_timings = 0;
-    if (!hlgl_grow(g, &g->timings, &g->max_timings, f->n_passes,
+    if (!hl_bk_grow(g->device, &g->timings, &g->max_timings, f->n_passes,
                    sizeof *g->timings))
         return;
     if (before->n_passes && end_of(g, before, before->n_passes - 1) > from)

@@ -200,7 +200,7 @@ static enum hl_result layout_find(struct hlgl *g,
     for (p->layout = 0; p->layout < g->n_layouts; p->layout++)
         if (!memcmp(&g->layouts[p->layout].key, &l.key, sizeof l.key))
             return HL_OK;
-    if (!hlgl_grow(g, &g->layouts, &g->max_layouts, g->n_layouts + 1,
+    if (!hl_bk_grow(g->device, &g->layouts, &g->max_layouts, g->n_layouts + 1,
                    sizeof *g->layouts))
         return HL_ERR_MEMORY;
     vao_make(g, &l);

@@ -196,7 +196,7 @@ enum hl_result hlgl_fbo_find(struct hlgl *g,
             *out = g->fbos[i].fbo;
             return HL_OK;
         }
-    if (!hlgl_grow(g, &g->fbos, &g->max_fbos, g->n_fbos + 1,
+    if (!hl_bk_grow(g->device, &g->fbos, &g->max_fbos, g->n_fbos + 1,
                    sizeof *g->fbos))
         return HL_ERR_MEMORY;
     enum hl_result r = fbo_make(g, color, n, depth, &f.fbo);

@@ -215,9 +215,6 @@ struct hlvk {
 /* vk_device.c. Log and translate; a lost device is remembered. */
 enum hl_result hlvk_check(struct hlvk *, VkResult, const char *what);
 void hlvk_name(struct hlvk *, VkObjectType, uint64_t handle, const char *);
-/* Grow an array kept in *array to at least `need` items: contents kept. */
-bool hlvk_grow(struct hlvk *, void *array, uint32_t *max, uint32_t need,
-               size_t item);
 
 /* vk_caps.c */
 VkFormat hlvk_format(enum hl_format);

@@ -77,7 +77,7 @@ static enum hl_result pool_make(struct hlvk *v, struct hlvk_cache *c)
         .maxSets = POOL_SETS,
         .poolSizeCount = HLVK_SETS, .pPoolSizes = sizes
     };
-    if (!hlvk_grow(v, &c->pools, &c->max_pools, c->n_pools + 1,
+    if (!hl_bk_grow(v->device, &c->pools, &c->max_pools, c->n_pools + 1,
                    sizeof *c->pools))
         return HL_ERR_MEMORY;
     enum hl_result r = hlvk_check(
@@ -174,7 +174,7 @@ static void table_put(struct hlvk_cache *c, uint32_t index)
 /* Room for one more set, the table at most half full. */
 static bool cache_reserve(struct hlvk *v, struct hlvk_cache *c)
 {
-    if (!hlvk_grow(v, &c->sets, &c->max_sets, c->n_sets + 1,
+    if (!hl_bk_grow(v->device, &c->sets, &c->max_sets, c->n_sets + 1,
                    sizeof *c->sets))
         return false;
     if ((c->n_sets + 1) * 2 <= c->table_size)

@@ -41,27 +41,6 @@ enum hl_result hlvk_check(struct hlvk *v, VkResult vk, const char *what)
     return r;
 }
 
-bool hlvk_grow(struct hlvk *v, void *array, uint32_t *max, uint32_t need,
-               size_t item)
-{
-    uint32_t more = *max ? *max : 16;
-    void *old;
-    if (need <= *max)
-        return true;
-    while (more < need)
-        more *= 2;
-    memcpy(&old, array, sizeof old);
-    void *grown = hl_bk_alloc(v->device, more * item);
-    if (!grown)
-        return false;
-    if (old)
-        memcpy(grown, old, *max * item);
-    hl_bk_free(v->device, old);
-    memcpy(array, &grown, sizeof grown);
-    *max = more;
-    return true;
-}
-
 void hlvk_name(struct hlvk *v, VkObjectType type, uint64_t handle,
                const char *name)
 {

@@ -163,9 +163,9 @@ static enum hl_result reserve_stamps(struct hlvk *v, struct hlvk_frame *f)
     uint32_t pools = (f->n_passes + 1) / QUERIES + 1;
     if (v->tick_ms <= 0.0)
         return HL_OK;
-    if (!hlvk_grow(v, &f->labels, &f->max_labels, f->n_passes + 1,
+    if (!hl_bk_grow(v->device, &f->labels, &f->max_labels, f->n_passes + 1,
                    sizeof *f->labels) ||
-        !hlvk_grow(v, &f->queries, &f->max_queries, pools,
+        !hl_bk_grow(v->device, &f->queries, &f->max_queries, pools,
                    sizeof *f->queries))
         return HL_ERR_MEMORY;
     while (f->n_queries < pools) {
@@ -210,8 +210,8 @@ static void read_timings(struct hlvk *v, struct hlvk_frame *f)
     uint32_t n = f->n_passes + 1;
     v->n_timings = 0;
     if (v->tick_ms <= 0.0 ||
-        !hlvk_grow(v, &v->timings, &v->max_timings, n, sizeof *v->timings) ||
-        !hlvk_grow(v, &v->stamps, &v->max_stamps, n, sizeof *v->stamps))
+        !hl_bk_grow(v->device, &v->timings, &v->max_timings, n, sizeof *v->timings) ||
+        !hl_bk_grow(v->device, &v->stamps, &v->max_stamps, n, sizeof *v->stamps))
         return;
     for (uint32_t at = 0; at < n; at += QUERIES) {
         uint32_t k = n - at < QUERIES ? n - at : QUERIES;
@@ -262,7 +262,7 @@ static enum hl_result cmd_begin(struct hlvk *v, struct hlvk_frame *f)
         .commandBufferCount = 1
     };
     enum hl_result r = HL_OK;
-    if (!hlvk_grow(v, &f->cmds, &f->max_cmds, f->n_cmds + 1,
+    if (!hl_bk_grow(v->device, &f->cmds, &f->max_cmds, f->n_cmds + 1,
                    sizeof *f->cmds))
         return HL_ERR_MEMORY;
     if (f->n_cmds == f->n_made) {

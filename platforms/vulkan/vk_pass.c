@@ -45,7 +45,7 @@ static enum hl_result find_sets(struct hlvk *v, const struct hl_bk_draw *draws,
 {
     uint64_t keys[HLVK_SETS][HL_MAX_TEXTURES], key[HL_MAX_TEXTURES];
     VkDescriptorSet sets[HLVK_SETS] = { VK_NULL_HANDLE };
-    if (!hlvk_grow(v, &v->scratch, &v->max_scratch, n, sizeof *v->scratch))
+    if (!hl_bk_grow(v->device, &v->scratch, &v->max_scratch, n, sizeof *v->scratch))
         return HL_ERR_MEMORY;
     for (uint32_t i = 0; i < n; i++)
         for (uint32_t kind = 0; kind < HLVK_SETS; kind++) {

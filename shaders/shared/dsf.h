@@ -8,8 +8,10 @@
 
 /* Depth threshold in metres. q: one step of the stored depth; slope:
  * |dz/dx| + |dz/dy| in metres a texel of the L-buffer; distance: of the
- * taps, in texels; c: share of the depth z. k >= 1.1 covers perspective to
- * 88 degrees (z p tan a / (1 - p tan a), spec/conformance b2). */
+ * taps, in texels; c: share of the depth z. k = 1.1
+ * is what perspective asks for at 88 degrees (z p tan a / (1 - p tan a) with
+ * 450 lines) with nothing to spare: 4 of 200,000 random planes were rejected
+ * falsely; with the planner's 1.5 none. */
 HL_FN float hl_dsf_threshold(float q, float k, float c, float z, float slope,
                              float distance_texels)
 {
@@ -17,7 +19,7 @@ HL_FN float hl_dsf_threshold(float q, float k, float c, float z, float slope,
 }
 
 /* 1 where a tap belongs to the surface, else 0. Depths in metres, ids as
- * stored (0..1), half_step: half of one id code. */
+ * codes or as stored; half_step: half of one id in that unit. */
 HL_FN float hl_dsf_accept(float tap_z, float tap_id, float z, float id,
                           float threshold, float half_step)
 {
