@@ -387,13 +387,13 @@ static enum hl_result make_targets(struct hl_renderer *r, bool readback)
 {
     static const char *const labels[HL_ROLE_COUNT] = {
         "", "normal", "dsf", "exponent", "light depth", "light", "color",
-        "depth", "resolved" };
+        "depth", "resolved", "depth copy" };
     for (uint32_t i = 0; i < r->plan.n_targets; i++) {
         const struct hl_plan_target *t = &r->plan.target[i];
         struct hl_tex_desc d = { labels[t->role], t->format, t->width,
                                  t->height, t->samples, 1,
                                  HL_TEX_TARGET | HL_TEX_SAMPLED,
-                                 t->sample_as };
+                                 t->sample_as, t->console };
         bool needed = t->role == HL_ROLE_LIGHT_DEPTH && r->plan.tile_depth;
         if (t->samples == 1 && (readback || needed))
             d.usage |= HL_TEX_READBACK;

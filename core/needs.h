@@ -32,6 +32,15 @@ enum hl_light_path {
     HL_LIGHT_PATH_LISTS            /* the same lists looped in the shader    */
 };
 
+/* Machines with Direct3D 9 pixel centres: who puts them at halves. Never
+ * both, which would shift by half a pixel again. */
+enum hl_half_pixel {
+    HL_HALF_PIXEL_AUTO = 0,        /* STATE on such machines, else nothing   */
+    HL_HALF_PIXEL_NONE,            /* nobody: pictures are half a pixel off  */
+    HL_HALF_PIXEL_STATE,           /* D3DRS_HALFPIXELOFFSET                  */
+    HL_HALF_PIXEL_VERTEX           /* the vertex stages, by target size      */
+};
+
 enum hl_dsf {
     HL_DSF_AUTO = 0,               /* SLOPE, or EXACT at 1:1                 */
     HL_DSF_NONE,                   /* plain bilinear                         */
@@ -54,6 +63,9 @@ struct hl_needs {
     float far;                     /* metres; 0 = 1000: depth quantisation   */
     float peak;                    /* bound of summed light at any point     */
     float max_error;               /* 8-bit sRGB codes; 0 = 1                */
+    bool decals;                   /* surfaces that change others' normals   */
+    bool light_depth_bound;        /* the light pass tests depth or stencil
+                                    * while it reads depth (light volumes)   */
 
     /* Choices. */
     enum hl_light_path light_path;
@@ -65,5 +77,6 @@ struct hl_needs {
     float dsf_k, dsf_c;            /* 0 = 1.5 and 0.001                      */
     float dsf_tau;                 /* constant threshold, share of z; 0 = 1 % */
     enum hl_format light_format;
+    enum hl_half_pixel half_pixel;
 };
 #endif

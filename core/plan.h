@@ -19,6 +19,8 @@ enum hl_role {                     /* of a target                            */
     HL_ROLE_COLOR,                 /* the frame, linear                      */
     HL_ROLE_DEPTH,                 /* depth of the frame                     */
     HL_ROLE_RESOLVED,              /* the frame, one sample a pixel          */
+    HL_ROLE_DEPTH_COPY,            /* LIGHT_DEPTH, where a bound depth target
+                                    * cannot be read: one float channel      */
     HL_ROLE_COUNT
 };
 
@@ -29,6 +31,7 @@ enum hl_pass_role {
     HL_PASS_MATERIAL,
     HL_PASS_FORWARD,               /* base draws, then further lights        */
     HL_PASS_BLENDED,
+    HL_PASS_DEPTH_COPY,            /* after the geometry pass                */
     HL_PASS_ROLE_COUNT
 };
 
@@ -65,6 +68,8 @@ struct hl_plan_target {
     enum hl_role role;
     enum hl_format format;
     enum hl_format sample_as;      /* as hl_tex_desc's; NONE = format        */
+    struct hl_console console;     /* as hl_tex_desc's                       */
+    uint32_t edram_tiles;          /* taken from console.edram_tile on       */
     uint32_t width, height, samples;
     uint32_t read_by;              /* bits 1 << enum hl_pass_role            */
     uint64_t bytes;
@@ -85,7 +90,13 @@ struct hl_plan_pass {
     uint32_t lights_a_draw;        /* 0: none                                */
 };
 
-enum { HL_PLAN_TARGETS = 8, HL_PLAN_PASSES = 6, HL_PLAN_REASONS = 20 };
+enum { HL_PLAN_TARGETS = 10, HL_PLAN_PASSES = 8, HL_PLAN_REASONS = 40 };
+
+enum hl_decals {                   /* how decals change normals              */
+    HL_DECALS_NONE = 0,
+    HL_DECALS_BLEND_NORMALS,       /* blended into the normal target         */
+    HL_DECALS_ALPHA_OBJECTS        /* drawn as translucent surfaces (K 5.2)  */
+};
 
 struct hl_plan {
     enum hl_pipeline pipeline;
@@ -107,7 +118,16 @@ struct hl_plan {
     uint32_t dsf;                  /* HL_DSF_* of block.h                    */
     float dsf_k, dsf_c, dsf_tau;
     uint32_t light_bits;           /* HL_BITS_* of block.h                   */
-    float light_scale;             /* light = stored * light_scale           */
+    float light_scale;             /* light = sampled * light_scale          */
+    float light_out;               /* written = light * light_out            */
+    char profile[16];              /* of the caps                            */
+    uint32_t two16;                /* HL_TWO16_* of block.h: normals and DSF */
+    uint32_t depth_read;           /* HL_DEPTH_READ_* of block.h             */
+    float id_steps;                /* an id is stored as id / id_steps       */
+    bool float_taps;               /* DSF and L-buffer sampled as numbers    */
+    enum hl_half_pixel half_pixel; /* AUTO: the machine has centres at halves */
+    enum hl_decals decals;
+    uint32_t edram_tiles;          /* most tiles in use at once; 0: no EDRAM */
     float far;                     /* the depth that DSF stores as 1         */
 
     float bytes_per_pixel;         /* all targets, a frame pixel             */
@@ -119,7 +139,8 @@ struct hl_plan {
 /* The cheapest plan of `pipeline` (AUTO: of all) that meets `needs` within
  * `caps`. Pure: equal inputs give equal plans; allocates nothing, touches no
  * device. HL_ERR_UNSUPPORTED or HL_ERR_INVALID when a need cannot be met:
- * *why (may be NULL) then says which, and *out is zeroed. */
+ * *why (may be NULL) then says which, and *out is zeroed but for its reasons,
+ * which give the numbers and what would fit. */
 enum hl_result hl_plan_make(struct hl_plan *out, enum hl_pipeline pipeline,
                             const struct hl_needs *needs,
                             const struct hl_caps *caps, enum hl_refusal *why);

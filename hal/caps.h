@@ -29,7 +29,8 @@ enum hl_format {
 
 enum hl_format_kind {
     HL_KIND_UNORM, HL_KIND_SNORM, HL_KIND_SRGB, HL_KIND_FLOAT, HL_KIND_UINT,
-    HL_KIND_DEPTH
+    HL_KIND_DEPTH,
+    HL_KIND_FIXED32          /* two's complement, range -32..32 (Xenos)      */
 };
 
 struct hl_format_info {
@@ -73,6 +74,8 @@ struct hl_cost_model {
 
 enum { HL_CAPS_NAME = 96 };
 
+#include "hal/profile.h"
+
 struct hl_caps {
     char backend[16];        /* "vulkan"                                     */
     char device[HL_CAPS_NAME];
@@ -88,5 +91,8 @@ struct hl_caps {
     bool clip_zero_to_one;   /* clip space z is 0..w, not -w..w              */
     struct hl_format_caps format[HL_FORMAT_COUNT];
     struct hl_cost_model cost;
+    struct hl_profile profile;   /* rules to plan by                         */
+    bool console_memory;     /* keeps memory as the profile's machine does;
+                              * else packed formats stand in for it          */
 };
 #endif

@@ -52,6 +52,9 @@ struct hl_device_desc {
     const char *device;      /* index ("0") or part of a name; NULL: best    */
     bool validation;         /* driver validation layers, counted            */
     const void *native;      /* backend's own: an embedder's device, or NULL */
+    const struct hl_profile *profile; /* console to keep the rules of
+                              * (hal/profile.h), copied; NULL: the machine's
+                              * own                                          */
     uint32_t max_buffers, max_textures, max_programs; /* 0: 4096 each        */
 };
 
@@ -119,6 +122,8 @@ struct hl_tex_desc {
      * texture view or a console's remap does. Equal texel size, not depth;
      * 0 = format. */
     enum hl_format sample_as;
+    /* How a console keeps it (hal/profile.h); all zero elsewhere. */
+    struct hl_console console;
 };
 
 /* Contents are undefined until written or cleared by a pass. */
@@ -168,7 +173,7 @@ enum hl_attr_format {
 
 enum { HL_MAX_ATTRS = 8, HL_MAX_STREAMS = 4, HL_MAX_COLORS = 8,
        HL_MAX_UNIFORMS = 4, HL_MAX_STORAGE = 2, HL_MAX_TEXTURES = 12,
-       HL_MAX_SPECS = 24 };
+       HL_MAX_SPECS = 32 };
 
 /* Attribute `location` is its index in the array. An absent attribute that a
  * built-in stage reads gives 0,0,0,1 at every vertex. */
@@ -192,7 +197,24 @@ enum hl_blend {
     HL_BLEND_ADD,            /* src + dst                                    */
     HL_BLEND_OVER,           /* src a + dst (1 - a); alpha: a + dst (1 - a)  */
     HL_BLEND_ADD_ALPHA,      /* src a + dst; alpha kept                      */
-    HL_BLEND_MAX
+    HL_BLEND_MAX,
+    HL_BLEND_SHIFT           /* src + dst blend_constant                     */
+};
+
+/* What a fragment does to the 8 stencil bits under it. */
+enum hl_stencil_op {
+    HL_STENCIL_KEEP = 0, HL_STENCIL_ZERO, HL_STENCIL_REPLACE,
+    HL_STENCIL_INCREMENT, HL_STENCIL_DECREMENT,            /* clamped        */
+    HL_STENCIL_INCREMENT_WRAP, HL_STENCIL_DECREMENT_WRAP, HL_STENCIL_INVERT
+};
+struct hl_stencil_face {
+    enum hl_compare test;    /* reference against stored, both masked; OFF
+                              * on both faces: no stencil                    */
+    enum hl_stencil_op fail, depth_fail, pass;
+};
+struct hl_stencil {
+    struct hl_stencil_face front, back;
+    uint8_t reference, read_mask, write_mask; /* masks: 0 = 255              */
 };
 enum hl_cull { HL_CULL_NONE = 0, HL_CULL_BACK, HL_CULL_FRONT };
 enum hl_topology { HL_TOPOLOGY_TRIANGLES = 0, HL_TOPOLOGY_LINES };
@@ -210,6 +232,8 @@ struct hl_prog_desc {
     enum hl_format depth;               /* NONE: pass without depth          */
     uint32_t samples;                   /* 0 = 1                             */
     enum hl_blend blend;                /* of every colour target            */
+    float blend_constant;               /* of HL_BLEND_SHIFT                 */
+    struct hl_stencil stencil;          /* needs a depth format with stencil */
     bool no_color_write;                /* mask all colour writes            */
     enum hl_compare depth_test;         /* OFF: neither test nor write       */
     bool depth_write;
@@ -259,7 +283,7 @@ struct hl_target {
     hl_tex tex;
     enum hl_load load;
     bool discard;            /* contents not needed after the pass           */
-    float clear[4];          /* colour; depth in [0]                         */
+    float clear[4];          /* colour; depth in [0], stencil (0..255) in [1] */
     hl_tex resolve;          /* single-sampled, same format: average; or {0} */
 };
 
@@ -272,6 +296,9 @@ struct hl_pass {
     uint32_t n_colors;
     struct hl_target depth;
     bool depth_read_only;
+    /* Direct3D 9 machines (profile.integer_centers) only: the state that
+     * puts pixel centres at halves, D3DRS_HALFPIXELOFFSET. */
+    bool half_pixel_offset;
     const struct hl_draw *draws;
     uint32_t n_draws;
 };

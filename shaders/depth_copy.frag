@@ -1,0 +1,15 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+/* SPDX-License-Identifier: Zlib */
+/* Depth as a number in a colour target, for machines that cannot read a
+ * depth target while it is bound (Direct3D 10.0). Texel for texel. */
+#include "shaders/shared/block.h"
+
+layout(set = 1, binding = HL_TEX_DEPTH) uniform sampler2D hl_tex_depth;
+layout(location = 0) out vec4 out_depth;
+
+void main()
+{
+    float d = texelFetch(hl_tex_depth, ivec2(gl_FragCoord.xy), 0).x;
+    out_depth = vec4(d, 0.0, 0.0, 1.0);
+}
