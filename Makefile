@@ -2,13 +2,22 @@
 #            make run          install what is missing, build, draw, report
 #            make test         install what is missing, build, run all suites
 #            make check        include arrows, undefined symbols, headers alone
+#            make packemu      the software device and a program that draws with
+#                              it: a C99 compiler, libc, libm and threads alone
+#            make fuzz         FUZZ_SECONDS of random plans and passes (clang)
 # config=debug|release|sanitize|coverage
 config ?= release
 ifeq ($(origin CC),default)
 CC := gcc
 endif
-AR ?= ar
-B := build/$(config)
+# CC="gcc -std=c99", CC=clang, CC=powerpc64-linux-gnu-gcc: objects of another
+# compiler have a folder of their own, a cross compiler brings its archiver.
+CC_NAME := $(notdir $(firstword $(CC)))
+CROSS := $(patsubst %gcc,%,$(filter %-gcc,$(firstword $(CC))))
+ifeq ($(origin AR),default)
+AR := $(CROSS)ar
+endif
+B := build/$(config)$(if $(filter-out gcc,$(CC_NAME)),-$(CC_NAME))
 GEN := build/gen
 # V=1 prints commands whole.
 Q := $(if $(V),,@)
@@ -39,24 +48,38 @@ HAL := $(call objs,hal/*.c) $(call objs,core/*.c)
 NULLB := $(call objs,platforms/null/*.c)
 VULKAN := $(call objs,platforms/vulkan/*.c) $(B)/obj/gen/hl_spirv.o
 GL := $(call objs,platforms/gl/*.c) $(B)/obj/gen/hl_glsl.o
+PACKEMU := $(call objs,platforms/packemu/*.c)
+PROFILES := $(call objs,platforms/profiles/*.c)
+CONFORM := $(call objs,platforms/conform/*.c)
 HOST := $(call objs,platforms/host/*.c)
 REFERENCE := $(call objs,platforms/reference/*.c)
-CLI_LIB := $(filter-out $(B)/obj/platforms/cli/main.o,$(call objs,platforms/cli/*.c))
+CLI_LIB := $(filter-out %/main.o %/packemu_main.o,$(call objs,platforms/cli/*.c))
+# What of host and cli needs no library: built-in scenes drawn by a device.
+PLAIN := $(patsubst %,$(B)/obj/platforms/host/%.o,builder builtin builtin_hall builtin_paper builtin_stress \
+    builtin_works file image_pfm mesh_clean scene_finish shapes util) \
+  $(patsubst %,$(B)/obj/platforms/cli/%.o,bridge bridge_ids bridge_mesh bridge_texture fail plan_reason \
+    plan_text readback render_device setup spread tap value view)
 LIST := $(B)/obj/platforms/platforms.o
 
-LIBS := $(call lib,halflight) $(call lib,halflight-null) $(call lib,halflight-vulkan) $(call lib,halflight-gl)
-TOOL_LIBS := $(call lib,halflight-cli) $(call lib,halflight-host) $(call lib,halflight-reference) \
-  $(call lib,halflight-list) $(call lib,halflight-vulkan) $(call lib,halflight-gl) $(call lib,halflight-null) $(call lib,halflight)
+LIBS := $(foreach x,halflight halflight-null halflight-packemu halflight-profiles halflight-conform halflight-vulkan \
+    halflight-gl,$(call lib,$(x)))
+TOOL_LIBS := $(foreach x,cli host reference list conform vulkan gl packemu profiles null,$(call lib,halflight-$(x))) \
+  $(call lib,halflight)
+PACKEMU_LIBS := $(call lib,halflight-conform) $(call lib,halflight-packemu) $(call lib,halflight-profiles) $(call lib,halflight)
 
-.PHONY: all libs tool run test tests check deps clean bench
+.PHONY: all libs tool packemu plain-tests run test tests check deps clean bench fuzz fuzzers
 all: tool libs
 libs: $(LIBS)
 tool: $(B)/halflight
+packemu: $(B)/halflight-packemu
 
 $(call lib,halflight): $(HAL)
 $(call lib,halflight-null): $(NULLB)
 $(call lib,halflight-vulkan): $(VULKAN)
 $(call lib,halflight-gl): $(GL)
+$(call lib,halflight-packemu): $(PACKEMU)
+$(call lib,halflight-profiles): $(PROFILES)
+$(call lib,halflight-conform): $(CONFORM)
 $(call lib,halflight-host): $(HOST)
 $(call lib,halflight-reference): $(REFERENCE)
 $(call lib,halflight-cli): $(CLI_LIB)
@@ -70,7 +93,11 @@ $(B)/halflight: $(B)/obj/platforms/cli/main.o $(TOOL_LIBS)
 	@echo "  LINK $@"
 	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ $(VULKAN_LIBS) $(GL_LIBS) $(HOST_LIBS)
 
-$(B)/obj/platforms/host/%.o $(B)/obj/platforms/cli/%.o $(B)/obj/platforms/reference/%.o $(B)/obj/tests/%.o: EXTRA := $(HOST_CFLAGS)
+$(B)/halflight-packemu: $(B)/obj/platforms/cli/packemu_main.o $(PLAIN) $(PACKEMU_LIBS)
+	@echo "  LINK $@"
+	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ -pthread -lm
+
+$(B)/obj/platforms/packemu/%.o $(B)/obj/platforms/host/%.o $(B)/obj/platforms/cli/%.o $(B)/obj/platforms/reference/%.o $(B)/obj/tests/%.o: EXTRA := $(HOST_CFLAGS)
 $(B)/obj/%.o: %.c
 	@mkdir -p $(@D)
 	@echo "  CC   $<"
@@ -91,8 +118,8 @@ $(GL): | $(GEN)/hl_glsl.c
 
 # Tests: every tests/test_*.c is a cmocka program over all libraries.
 TESTS := $(patsubst tests/%.c,$(B)/tests/%,$(wildcard tests/test_*.c)) $(patsubst tests/%.c,$(B)/tests/%,$(wildcard tests/embed.c))
-TEST_LIB := $(filter-out $(B)/obj/tests/test_% $(B)/obj/tests/embed.o,$(call objs,tests/*.c))
-tests: $(TESTS)
+TEST_LIB := $(filter-out $(B)/obj/tests/test_% $(B)/obj/tests/bench_% $(B)/obj/tests/fuzz_% $(B)/obj/tests/embed.o,$(call objs,tests/*.c))
+tests: $(TESTS) fuzzers
 $(B)/tests/%: $(B)/obj/tests/%.o $(TEST_LIB) $(TOOL_LIBS)
 	@mkdir -p $(@D)
 	@echo "  LINK $@"
@@ -109,11 +136,45 @@ $(GEN)/%_frag_glsl.x: tests/%.frag shaders/embed.sh $(wildcard shaders/*.glsl sh
 	@mkdir -p $(GEN)
 	@echo "  GLSL $@"
 	$(Q)sh shaders/embed.sh stage $@ $<
-$(call objs,tests/*.c): | $(TEST_STAGES)
+$(filter-out $(B)/obj/tests/fuzz_%,$(call objs,tests/*.c)): | $(TEST_STAGES)
 $(B)/tests/embed: $(B)/obj/tests/embed.o $(LIBS)
 	@mkdir -p $(@D)
 	@echo "  LINK $@"
 	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $< $(call lib,halflight-vulkan) $(call lib,halflight) $(VULKAN_LIBS) -lm
+
+# Tests of core, hal and the software device for machines that have a C library
+# and nothing else, with tests/minimal for cmocka; less those that an emulated
+# processor takes minutes for.
+PLAIN_TESTS := $(patsubst %,$(B)/plain/test_%,exact hal hal_faults ids ids_rates mesh mesh_tangent needs plan shade) \
+  $(filter-out %/test_packemu_pass,$(patsubst tests/%.c,$(B)/plain/%,$(wildcard tests/test_packemu_*.c)))
+plain-tests: $(PLAIN_TESTS)
+$(B)/plain/obj/%.o: %.c
+	@mkdir -p $(@D)
+	@echo "  CC   $<"
+	$(Q)$(CC) -Itests/minimal -DHL_NO_DRIVERS $(ALL_CFLAGS) $(HOST_CFLAGS) -MMD -MP -c -o $@ $<
+$(B)/plain/test_%: $(B)/plain/obj/tests/test_%.o $(patsubst %,$(B)/plain/obj/%.o,tests/minimal/cmocka tests/check \
+    tests/mesh_kit tests/frame_kit tests/kernel_kit tests/packemu_kit tests/raster_kit platforms/platforms platforms/null/null) $(PACKEMU_LIBS)
+	@echo "  LINK $@"
+	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ -pthread -lm
+
+# Fuzzers: with a main of their own for any compiler and the suites' smoke run,
+# or libFuzzer's.
+FUZZERS := $(patsubst %,$(B)/fuzz/%,fuzz_plan fuzz_packemu)
+FUZZ_MAIN = $(B)/obj/tests/fuzz_main.o
+FUZZ_SECONDS ?= 600
+fuzzers: $(FUZZERS)
+fuzz:
+	@$(MAKE) --no-print-directory CC=clang B=build/fuzz FUZZ_MAIN= FUZZ_LDFLAGS=-fsanitize=fuzzer,address,undefined \
+	    CFLAGS="-O1 -g -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined" fuzzers
+	@for f in $(notdir $(FUZZERS)); do \
+	    mkdir -p build/fuzz/corpus/$$f; \
+	    nice build/fuzz/fuzz/$$f -max_total_time=$$(($(FUZZ_SECONDS) / $(words $(FUZZERS)))) -max_len=4096 -len_control=0 \
+	        -timeout=20 -artifact_prefix=build/fuzz/$$f- build/fuzz/corpus/$$f || exit 1; \
+	done
+$(FUZZERS): $(B)/fuzz/%: $(B)/obj/tests/%.o $(B)/obj/tests/fuzz_kit.o $(FUZZ_MAIN) $(filter %/plan_text.o %/plan_reason.o,$(PLAIN)) $(PACKEMU_LIBS)
+	@mkdir -p $(@D)
+	@echo "  LINK $@"
+	$(Q)$(CC) $(ALL_LDFLAGS) $(FUZZ_LDFLAGS) -o $@ $^ -pthread -lm
 
 deps:
 	@sh .ci/deps

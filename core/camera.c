@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: Zlib */
+#include "core/exact.h"
 #include "core/scene.h"
 #include "core/vec.h"
 
@@ -23,7 +24,8 @@ enum hl_result hl_camera_look_at(struct hl_camera *out, const float eye[3],
                           -hl_dot3(back, e), 1 };
     for (int i = 0; i < 16; i++)
         out->view[i] = v[i];
-    out->tan_half_y = (float)tan((double)vfov * 3.14159265358979323846 / 360);
+    out->tan_half_y = (float)hl_exact_tan((double)vfov *
+                                          (3.14159265358979323846 / 360));
     out->near = near;
     out->far = far;
     return HL_OK;

@@ -11,6 +11,7 @@ void hl_pass_begin(struct hl_renderer *r, const char *label)
 {
     memset(&r->pass, 0, sizeof r->pass);
     r->pass.label = label;
+    r->pass.half_pixel_offset = r->plan.half_pixel == HL_HALF_PIXEL_STATE;
     r->n_draws = 0;
 }
 
@@ -145,7 +146,7 @@ static uint32_t write_batch(struct hl_renderer *r, const struct hl_frame *f,
 static uint32_t put_batch(struct hl_renderer *r, const struct hl_frame *f,
                           const uint32_t *refs, uint32_t n, uint32_t size)
 {
-    hl_vec4 count = { (float)n, 0, 0, 0 };
+    hl_vec4 count = { (float)n / r->count_steps, 0, 0, 0 };
     uint32_t at = r->counting ? hl_arena_put(&r->arena, &count, sizeof count)
                               : write_batch(r, f, refs, n, size);
     if (at + HL_LIGHTS_BYTES > r->arena.size)
@@ -302,7 +303,8 @@ void hl_emit_light_pass(struct hl_renderer *r, const struct hl_frame *f)
 {
     struct hl_texture_binding *t = r->light_textures;
     memset(t, 0, sizeof r->light_textures);
-    t[HL_TEX_DEPTH].tex = r->target[HL_ROLE_LIGHT_DEPTH];
+    hl_tex copy = r->target[HL_ROLE_DEPTH_COPY];
+    t[HL_TEX_DEPTH].tex = copy.id ? copy : r->target[HL_ROLE_LIGHT_DEPTH];
     t[HL_TEX_NORMAL].tex = r->target[HL_ROLE_NORMAL];
     t[HL_TEX_EXPONENT].tex = r->target[HL_ROLE_EXPONENT];
     if (r->plan.light_path == HL_LIGHT_PATH_TILES)
@@ -418,14 +420,21 @@ void hl_emit_forward(struct hl_renderer *r, const struct hl_frame *f)
 
 /* ---- the frame ---------------------------------------------------------- */
 
+static void clear_packed(struct hl_renderer *r, enum hl_role role, float x,
+                         float y)
+{
+    hl_vec4 v = hl_two16_encode(r->plan.two16, x, y);
+    const float clear[4] = { v.x, v.y, v.z, v.w };
+    hl_pass_color(r, r->target[role], HL_LOAD_CLEAR, clear);
+}
+
 static void geometry_pass(struct hl_renderer *r, const struct hl_frame *f)
 {
-    /* Background: the code of normal (0,0,1), depth far, id 0. */
-    const float normal[4] = { 0.5f, 0.5f, 0, 1 }, dsf[4] = { 1, 0, 0, 1 };
     const float zero[4] = { 0, 0, 0, 0 };
     hl_pass_begin(r, "geometry");
-    hl_pass_color(r, r->target[HL_ROLE_NORMAL], HL_LOAD_CLEAR, normal);
-    hl_pass_color(r, r->target[HL_ROLE_DSF], HL_LOAD_CLEAR, dsf);
+    /* Background: the code of normal (0,0,1), depth far, id 0. */
+    clear_packed(r, HL_ROLE_NORMAL, 0.5f, 0.5f);
+    clear_packed(r, HL_ROLE_DSF, 1, 0);
     if (r->target[HL_ROLE_EXPONENT].id)
         hl_pass_color(r, r->target[HL_ROLE_EXPONENT], HL_LOAD_CLEAR, zero);
     hl_pass_depth(r, r->target[HL_ROLE_LIGHT_DEPTH], HL_LOAD_CLEAR, false);
@@ -434,15 +443,32 @@ static void geometry_pass(struct hl_renderer *r, const struct hl_frame *f)
     hl_pass_end(r);
 }
 
+/* For machines that cannot read a depth target which is bound. */
+static void depth_copy_pass(struct hl_renderer *r)
+{
+    const struct hl_rect all = { 0, 0, 0, 0 };
+    if (!r->target[HL_ROLE_DEPTH_COPY].id)
+        return;
+    memset(r->light_textures, 0, sizeof r->light_textures);
+    r->light_textures[HL_TEX_DEPTH].tex = r->target[HL_ROLE_LIGHT_DEPTH];
+    hl_pass_begin(r, "depth copy");
+    hl_pass_color(r, r->target[HL_ROLE_DEPTH_COPY], HL_LOAD_DISCARD, NULL);
+    draw_screen(r, r->depth_copy, &all);
+    hl_pass_end(r);
+}
+
 static void light_pass(struct hl_renderer *r, const struct hl_frame *f)
 {
     const float black[4] = { 0, 0, 0, 0 };
+    const struct hl_plan_pass *plan = hl_plan_pass(&r->plan, HL_PASS_LIGHT);
     if (r->result == HL_OK && r->plan.light_path != HL_LIGHT_PATH_RECTS)
         r->result = hl_build_tiles(r, f);
     if (r->result != HL_OK)
         return;
     hl_pass_begin(r, "light");
     hl_pass_color(r, r->target[HL_ROLE_LIGHT], HL_LOAD_CLEAR, black);
+    if (plan && plan->depth != HL_ROLE_NONE)
+        hl_pass_depth(r, r->target[plan->depth], HL_LOAD_KEEP, true);
     hl_emit_light_pass(r, f);
     hl_pass_end(r);
 }
@@ -483,10 +509,14 @@ static void shading_passes(struct hl_renderer *r, const struct hl_frame *f)
 
 static void note_peak(struct hl_renderer *r)
 {
-    bool wide = r->plan.light_bits == HL_BITS_FLOAT;
-    float most = r->plan.light_bits == HL_BITS_HALF ? HL_HALF_MAX
-                                                    : r->plan.light_scale;
-    r->stats.light_may_clip = !wide && r->stats.light_peak > most;
+    const struct hl_plan_target *t = hl_plan_target(&r->plan, HL_ROLE_LIGHT);
+    if (!t)
+        return;
+    const struct hl_format_info *f = hl_format_info(t->format);
+    bool real = f->kind == HL_KIND_FLOAT;
+    float most = r->plan.light_scale * (real ? HL_HALF_MAX : 1.0f);
+    r->stats.light_may_clip = !(real && f->bits[0] == 32) &&
+                              r->stats.light_peak > most;
 }
 
 enum hl_result hl_frame_draw(struct hl_renderer *r, const struct hl_frame *f,
@@ -499,6 +529,7 @@ enum hl_result hl_frame_draw(struct hl_renderer *r, const struct hl_frame *f,
         return e;
     if (r->plan.pipeline == HL_PIPELINE_INFERRED) {
         geometry_pass(r, f);
+        depth_copy_pass(r);
         light_pass(r, f);
     }
     shading_passes(r, f);

@@ -64,7 +64,9 @@ enum hl_inspect {
                               * normal group; 0 = background                 */
     HL_INSPECT_LIGHTS,       /* float a pixel of the shading pass: light
                               * evaluations (frame pixels, or L-buffer
-                              * texels for the inferred pipeline)            */
+                              * texels for the inferred pipeline); not above
+                              * 65,535, or 255, where nothing with more
+                              * codes blends                                 */
     HL_INSPECT_REJECTS       /* uint8 a frame pixel: rejected DSF taps + 1,
                               * 0 = background; inferred pipeline only       */
 };

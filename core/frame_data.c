@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Zlib */
 /* A frame's data on the host: checks, culling, uniform blocks. */
 #include <string.h>
+#include "core/exact.h"
 #include "core/renderer.h"
 #include "core/vec.h"
 #include "shaders/shared/pack.h"
@@ -201,8 +202,9 @@ void hl_gather_object(struct hl_renderer *r, const struct hl_frame *f,
     copy4(&b.model_view, mv);
     float n = it->material ? hl_roughness_exponent(it->material->roughness)
                            : 1.0f;
-    b.flat_ids = hl_v4(hl_exponent_encode(n), hl_det3(mv) < 0 ? -1.0f : 1.0f,
-                       0, 0);
+    /* hl_exponent_encode(n), with the same bits on every machine. */
+    float code = (float)hl_exact_log2((double)n) * 0.125f;
+    b.flat_ids = hl_v4(code, hl_det3(mv) < 0 ? -1.0f : 1.0f, 0, 0);
     b.ids = hl_v4((float)it->id_base, (float)v->item, (float)v->list_first,
                   (float)v->list_count);
     v->object = hl_arena_put(&r->arena, &b, sizeof b);

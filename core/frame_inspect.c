@@ -17,11 +17,58 @@ void hl_inspect_size(const struct hl_renderer *r, enum hl_inspect what,
     *height = light ? r->plan.light_height : r->plan.height;
 }
 
-static enum hl_format format_of(enum hl_inspect what)
+static bool by_lists(const struct hl_renderer *r)
+{
+    return r->plan.light_path == HL_LIGHT_PATH_LISTS &&
+           r->plan.pipeline == HL_PIPELINE_INFERRED;
+}
+
+/* Four bytes a texel, of which counts take the first channel. */
+static enum hl_format format_of(const struct hl_renderer *r,
+                                enum hl_inspect what)
 {
     return what == HL_INSPECT_IDS ? HL_FORMAT_R32_UINT
-           : what == HL_INSPECT_LIGHTS ? HL_FORMAT_R32_FLOAT
-                                       : HL_FORMAT_R8_UNORM;
+           : what == HL_INSPECT_REJECTS ? HL_FORMAT_R8_UNORM
+           : by_lists(r) ? HL_FORMAT_R32_FLOAT : r->count_format;
+}
+
+/* Consoles do not blend 32-bit floats. One draw with lists need not. */
+void hl_inspect_set_up(struct hl_renderer *r)
+{
+    static const struct { enum hl_format format; float steps; } list[] = {
+        { HL_FORMAT_R32_FLOAT, 1 }, { HL_FORMAT_RG16_UNORM, 65535 },
+        { HL_FORMAT_RGBA8_UNORM, 255 }
+    };
+    const struct hl_caps *c = hl_device_caps(r->device);
+    int i = 0;
+    while (i < 2 && !(c->format[list[i].format].use & HL_USE_BLEND))
+        i++;
+    r->count_format = list[i].format;
+    r->count_steps = list[i].steps;
+}
+
+/* Codes of count_format, as read back, to numbers of lights. The first two
+ * bytes of RGBA8_UNORM are red and no green. */
+static void to_counts(uint8_t *texel, size_t n)
+{
+    for (size_t i = 0; i < n; i++, texel += sizeof(float)) {
+        uint16_t code;
+        memcpy(&code, texel, sizeof code);
+        float count = code;
+        memcpy(texel, &count, sizeof count);
+    }
+}
+
+/* Over the frame's own targets, which are drawn and resolved. */
+static void place_in_edram(struct hl_renderer *r, struct hl_tex_desc *color,
+                           struct hl_tex_desc *depth)
+{
+    const struct hl_caps *c = hl_device_caps(r->device);
+    if (!c->console_memory || !c->profile.edram_tiles)
+        return;
+    color->console.edram_tile = 1;
+    depth->console.edram_tile = (uint16_t)(1 + hl_edram_tiles(
+        &c->profile, color->format, color->width, color->height, 1));
 }
 
 /* Single-sampled, whatever the frame is: a count or an id is never averaged. */
@@ -33,11 +80,12 @@ static enum hl_result make_targets(struct hl_renderer *r,
     hl_inspect_size(r, what, &c.width, &c.height);
     d = c;
     c.label = "inspect";
-    c.format = format_of(what);
+    c.format = format_of(r, what);
     c.usage = HL_TEX_TARGET | HL_TEX_READBACK;
     d.label = "inspect depth";
     d.format = hl_plan_target(&r->plan, HL_ROLE_DEPTH)->format;
     d.usage = HL_TEX_TARGET;
+    place_in_edram(r, &c, &d);
     hl_tex_destroy(r->device, &r->inspect_color);
     hl_tex_destroy(r->device, &r->inspect_depth);
     enum hl_result e = hl_tex_create(r->device, &r->inspect_color, &c);
@@ -74,7 +122,8 @@ static enum hl_result need_programs(struct hl_renderer *r,
     return p->id ? HL_OK
            : hl_screen_program(r, lists ? HL_SHADER_COUNT_TILES_FRAG
                                         : HL_SHADER_COUNT_FRAG,
-                               HL_FORMAT_R32_FLOAT, HL_BLEND_ADD, 1, p);
+                               format_of(r, what),
+                               lists ? HL_BLEND_OFF : HL_BLEND_ADD, 1, p);
 }
 
 static void emit(struct hl_renderer *r, const struct hl_frame *f,
@@ -119,6 +168,10 @@ enum hl_result hl_frame_inspect(struct hl_renderer *r,
         hl_pass_depth(r, r->inspect_depth, HL_LOAD_CLEAR, false);
     emit(r, f, what);
     hl_pass_end(r);
-    return r->result == HL_OK ? hl_tex_read(r->device, r->inspect_color, out,
-                                            bytes) : r->result;
+    if (r->result == HL_OK)
+        r->result = hl_tex_read(r->device, r->inspect_color, out, bytes);
+    if (r->result == HL_OK && what == HL_INSPECT_LIGHTS &&
+        format_of(r, what) != HL_FORMAT_R32_FLOAT)
+        to_counts(out, bytes / sizeof(float));
+    return r->result;
 }

@@ -1,13 +1,26 @@
 /* SPDX-License-Identifier: Zlib */
 /* Formats: which are usable, and the worst error that each encoding adds. */
+#include "core/exact.h"
 #include "core/pipe.h"
 #include "core/vec.h"
+
+/* A console's own rule; stand-ins are judged by what their machine can do. */
+static bool blend_forbidden(const struct hl_caps *caps, enum hl_format format)
+{
+    const enum hl_format *f = caps->profile.no_blend;
+    for (int i = 0; caps->console_memory && i < HL_PROFILE_NO_BLEND && f[i];
+         i++)
+        if (f[i] == format)
+            return true;
+    return false;
+}
 
 bool hl_format_usable(const struct hl_caps *caps, enum hl_format format,
                       int use, uint32_t samples)
 {
     const struct hl_format_caps *f = &caps->format[format];
-    return (f->use & use) == use && (f->samples & samples) == samples;
+    return (f->use & use) == use && (f->samples & samples) == samples &&
+           !((use & HL_USE_BLEND) && blend_forbidden(caps, format));
 }
 
 enum hl_format hl_format_pick(const struct hl_caps *caps,
@@ -25,12 +38,24 @@ enum hl_format hl_format_pick(const struct hl_caps *caps,
 static float component_error(enum hl_format format)
 {
     const struct hl_format_info *f = hl_format_info(format);
-    float steps = (float)((1u << f->bits[0]) - 1u);
+    float steps = (float)(((uint64_t)1 << f->bits[0]) - 1u);
     if (f->kind == HL_KIND_FLOAT)
         return f->bits[0] == 32 ? 6e-8f : 1.0f / 2048;
-    if (f->kind == HL_KIND_SNORM)
+    /* Signed codes have 65,534 steps from -1 to 1, -32 to 32 as well. */
+    if (f->kind == HL_KIND_SNORM || f->kind == HL_KIND_FIXED32)
         return 1.0f / (steps - 1.0f);
     return 1.0f / steps;
+}
+
+float hl_fixed_step(enum hl_format format)
+{
+    const struct hl_format_info *f = hl_format_info(format);
+    if (f->bits[0] == 0)
+        return 1.0f;
+    uint32_t half = (1u << (f->bits[0] - 1)) - 1u;
+    if (f->kind == HL_KIND_FIXED32)
+        return 32.0f / (float)half;
+    return 1.0f / (float)(f->kind == HL_KIND_SNORM ? half : 2u * half + 1u);
 }
 
 /* spec: e = 2 d / cos(theta / 2) with d = sqrt 2 h, theta = 90 degrees: the
@@ -40,22 +65,32 @@ float hl_normal_error(enum hl_format format)
 {
     double d = 1.41421356 * (double)component_error(format);
     double r = 0.70710678;
-    double up = 2.0 * (asin(r + d < 1.0 ? r + d : 1.0) - asin(r));
+    double up = 2.0 * (hl_exact_asin(r + d < 1.0 ? r + d : 1.0) -
+                     hl_exact_asin(r));
     return (float)(up * 57.29577951);
+}
+
+/* Fixed point: half a step a blend, against a value of 1/8 of the range. */
+float hl_range_error(enum hl_format format, float range, uint32_t terms)
+{
+    float n = terms ? (float)terms : 1.0f;
+    return n * 0.5f * hl_fixed_step(format) / range * 8.0f;
 }
 
 /* FLOAT: |error| <= u * sum of partial sums, and for equal terms the partial
  * sums average half the total, so u (terms + 1) / 2 (conformance b3), with
- * u = 2^-10 for 11 bits of significand under either rounding. UNORM: half a
- * step a blend, against a value of 1/8 of the scale. */
+ * u = 2^-10 for 11 bits of significand under either rounding; 8 bits in 7e3,
+ * which holds from 1/4 on, and 6 in the least of 11-bit floats. */
 float hl_accumulation_error(enum hl_format format, uint32_t terms)
 {
     const struct hl_format_info *f = hl_format_info(format);
     float n = terms ? (float)terms : 1.0f;
     if (f->kind == HL_KIND_FLOAT) {
         float u = f->bits[0] == 32 ? 1.2e-7f
-                  : f->bits[0] == 16 ? 1.0f / 1024 : 1.0f / 32;
+                  : f->bits[0] == 16 ? 1.0f / 1024
+                  : f->bits[0] == 10 ? 1.0f / 128 : 1.0f / 32;
         return u * (n + 1.0f) * 0.5f;
     }
-    return n * 0.5f / (float)((1u << f->bits[0]) - 1u) * 8.0f;
+    return hl_range_error(format, f->kind == HL_KIND_FIXED32 ? 32.0f : 1.0f,
+                          terms);
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Zlib */
 /* Lights in view space and their bounds on the screen. */
 #include <string.h>
+#include "core/exact.h"
 #include "core/light.h"
 #include "core/vec.h"
 
@@ -177,7 +178,8 @@ bool hl_box_visible(const struct hl_box *b, const struct hl_camera *cam,
 
 static void spot_terms(const struct hl_light *l, float *scale, float *offset)
 {
-    float ci = cosf(l->inner), co = cosf(l->outer);
+    float ci = (float)hl_exact_cos((double)l->inner);
+    float co = (float)hl_exact_cos((double)l->outer);
     float d = ci - co;
     *scale = 1.0f / (d > 0.001f ? d : 0.001f);
     *offset = -co * *scale;

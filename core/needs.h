@@ -50,7 +50,8 @@ enum hl_dsf {
 
 struct hl_needs {
     uint32_t width, height;        /* frame, pixels; required                */
-    uint32_t light_width, light_height; /* L-buffer texels; 0 = 5/8 (K Fig. 9) */
+    /* L-buffer texels; 0 = 5/8 (K Fig. 9), or the most that EDRAM holds. */
+    uint32_t light_width, light_height;
     uint32_t samples;              /* of the frame; 0 = 1                    */
     uint32_t n_objects, n_triangles, n_lights;
     float lights_per_pixel;        /* mean over the screen, by light bounds  */

@@ -10,6 +10,8 @@ struct hl_ask {
     struct hl_needs n;
     const struct hl_caps *caps;
     float per_pixel, per_object;   /* lights; estimates where unknown        */
+    uint32_t fit_width, fit_height; /* L-buffer that EDRAM holds; 0: not
+                                    * known to be needed                     */
 };
 
 enum hl_refusal hl_plan_forward(struct hl_plan *, const struct hl_ask *);
@@ -26,8 +28,55 @@ struct hl_plan_pass *hl_plan_add_pass(struct hl_plan *, enum hl_pass_role);
  * the resolved colour. */
 enum hl_refusal hl_plan_frame_targets(struct hl_plan *, const struct hl_ask *,
                                       uint32_t blends);
-void hl_plan_common(struct hl_plan *, const struct hl_ask *);
+/* First usable; *row is its row of the profile, or NULL. */
+enum hl_format hl_plan_depth_format(const struct hl_caps *, int use,
+                                    uint32_t samples,
+                                    const struct hl_profile_format **row);
+enum hl_refusal hl_plan_common(struct hl_plan *, const struct hl_ask *);
 void hl_plan_finish(struct hl_plan *, const struct hl_ask *, double cost_ns);
+
+/* pipe_light.c: how the light pass finds its lights, giving nanoseconds, and
+ * the L-buffer. */
+double hl_plan_light_path(struct hl_plan *, const struct hl_ask *);
+enum hl_refusal hl_plan_light_format(struct hl_plan *, const struct hl_ask *);
+
+/* plan_console.c: what a profile rules. */
+
+/* First row that holds here and is usable, of `asked` where that is not
+ * NONE; NULL: none, or the profile has no rows. */
+const struct hl_profile_format *
+hl_plan_row(const struct hl_caps *, const struct hl_profile_format *list,
+            enum hl_format asked, int use, uint32_t samples);
+/* Format of the console that a target's stands for; its own elsewhere. */
+enum hl_format hl_plan_console_format(const struct hl_caps *,
+                                      const struct hl_plan_target *);
+/* Lay the row on the target, and say what it stands in for. `read`: the
+ * target is sampled. */
+void hl_plan_keep(struct hl_plan *, struct hl_plan_target *,
+                  const struct hl_caps *, const struct hl_profile_format *,
+                  bool read);
+/* Name, ids, taps and pixel centres. */
+enum hl_refusal hl_plan_profile(struct hl_plan *, const struct hl_ask *);
+/* How the normal and DSF targets keep two numbers. */
+void hl_plan_two16(struct hl_plan *, const struct hl_ask *,
+                   const struct hl_profile_format *);
+/* Scales of an L-buffer of fixed range, 0 < range; gives its error. */
+float hl_plan_light_range(struct hl_plan *, const struct hl_ask *,
+                          const struct hl_profile_format *, uint32_t blends);
+/* Decals; `normal` NONE: there is no normal target. */
+void hl_plan_decals(struct hl_plan *, const struct hl_ask *,
+                    enum hl_format normal);
+/* The light pass's depth: in place, bound as well, or copied. Adds the copy's
+ * target and pass. */
+enum hl_refusal hl_plan_depth_read(struct hl_plan *, const struct hl_ask *);
+/* Bytes a frame that are copied so that targets can be read. */
+double hl_plan_resolves(struct hl_plan *, const struct hl_ask *);
+
+/* edram.c: place all targets, or refuse with reasons and, when the L-buffer's
+ * size is the planner's, a size that fits in *fit_width, *fit_height (else 0).
+ * Nothing on machines without EDRAM. */
+enum hl_refusal hl_plan_edram(struct hl_plan *, const struct hl_ask *,
+                              uint32_t *fit_width, uint32_t *fit_height);
 
 /* layout.c: formats and what they cost in accuracy. */
 bool hl_format_usable(const struct hl_caps *, enum hl_format, int use,
@@ -41,4 +90,8 @@ float hl_normal_error(enum hl_format);
 /* Relative error of a sum of `terms` blends, the last rounding included;
  * values of about 1/8 of `peak`, in a format scaled to it. */
 float hl_accumulation_error(enum hl_format, uint32_t terms);
+/* The same where `range` of a fixed point format stands for the peak. */
+float hl_range_error(enum hl_format, float range, uint32_t terms);
+/* Between codes of the first channel of a fixed point format. */
+float hl_fixed_step(enum hl_format);
 #endif

@@ -40,19 +40,22 @@ static double forward_cost(const struct hl_ask *ask, double draws_an_object,
            + 1.5 * pixels * lights_shaded * (double)c->light_ns;
 }
 
-static void finish(struct hl_plan *p, const struct hl_ask *ask, double draws,
-                   double lights)
+static enum hl_refusal finish(struct hl_plan *p, const struct hl_ask *ask,
+                              double draws, double lights)
 {
+    uint32_t w, h;
     const struct hl_plan_target *t = hl_plan_target(p, HL_ROLE_COLOR);
     double texel = hl_format_info(t->format)->bytes + 4.0;
     p->light_error = t->error;
     p->moved_per_pixel = (float)(texel * 2.0 * draws * p->samples);
+    hl_plan_decals(p, ask, HL_FORMAT_NONE);
     hl_plan_finish(p, ask, forward_cost(ask, draws, lights));
+    return hl_plan_edram(p, ask, &w, &h);
 }
 
 enum hl_refusal hl_plan_forward(struct hl_plan *p, const struct hl_ask *ask)
 {
-    hl_plan_common(p, ask);
+    enum hl_refusal r = hl_plan_common(p, ask);
     float an_object = ask->per_object;
     /* A loop runs to its batch: no longer than the scene has lights. */
     uint32_t all = ask->n.n_lights;
@@ -61,7 +64,8 @@ enum hl_refusal hl_plan_forward(struct hl_plan *p, const struct hl_ask *ask)
                      ? up(an_object / (float)batch) - 1 : 0;
     /* The largest object sees all lights: its pixels blend the most. */
     uint32_t blends = all / batch + (all % batch != 0);
-    enum hl_refusal r = hl_plan_frame_targets(p, ask, at_least_one(blends));
+    if (r == HL_REFUSED_NOTHING)
+        r = hl_plan_frame_targets(p, ask, at_least_one(blends));
     if (r != HL_REFUSED_NOTHING)
         return r;
     p->specular = HL_SPECULAR_CONSTANT;
@@ -72,15 +76,15 @@ enum hl_refusal hl_plan_forward(struct hl_plan *p, const struct hl_ask *ask)
                                : HL_WHY_EXPONENT_NONE, p->exponent, 0, 0, 0);
     forward_pass(p, batch);
     double draws = 1.0 + extra;
-    finish(p, ask, draws, draws * batch);
-    return HL_REFUSED_NOTHING;
+    return finish(p, ask, draws, draws * batch);
 }
 
 enum hl_refusal hl_plan_multipass(struct hl_plan *p, const struct hl_ask *ask)
 {
-    hl_plan_common(p, ask);
+    enum hl_refusal r = hl_plan_common(p, ask);
     uint32_t blends = at_least_one(ask->n.n_lights);
-    enum hl_refusal r = hl_plan_frame_targets(p, ask, blends);
+    if (r == HL_REFUSED_NOTHING)
+        r = hl_plan_frame_targets(p, ask, blends);
     if (r != HL_REFUSED_NOTHING)
         return r;
     p->specular = ask->n.specular == HL_NEED_NO_SPECULAR
@@ -94,6 +98,5 @@ enum hl_refusal hl_plan_multipass(struct hl_plan *p, const struct hl_ask *ask)
     forward_pass(p, 1);
     double lights = p->scissor ? (double)ask->per_pixel
                                : (double)ask->per_object;
-    finish(p, ask, 1.0 + (double)ask->per_object, lights);
-    return HL_REFUSED_NOTHING;
+    return finish(p, ask, 1.0 + (double)ask->per_object, lights);
 }

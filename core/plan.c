@@ -54,6 +54,43 @@ static bool color_good_enough(enum hl_format f, uint32_t blends, float codes)
     return 106.0f * hl_accumulation_error(f, blends) <= codes * 0.5f;
 }
 
+static enum hl_format pick_color(const struct hl_ask *ask, int use,
+                                 uint32_t samples, uint32_t blends)
+{
+    const enum hl_format list[] = { HL_FORMAT_RGBA16_FLOAT,
+                                    HL_FORMAT_RGBA32_FLOAT, HL_FORMAT_NONE };
+    enum hl_format color = HL_FORMAT_NONE;
+    for (int i = 0; list[i]; i++) {
+        if (!hl_format_usable(ask->caps, list[i], use, samples))
+            continue;
+        color = list[i];
+        if (color_good_enough(color, blends, ask->n.max_error))
+            break;
+    }
+    return color;
+}
+
+enum hl_format hl_plan_depth_format(const struct hl_caps *caps, int use,
+                                    uint32_t samples,
+                                    const struct hl_profile_format **row)
+{
+    const enum hl_format depths[] = { HL_FORMAT_D32_FLOAT,
+                                      HL_FORMAT_D24_UNORM_S8,
+                                      HL_FORMAT_D16_UNORM, HL_FORMAT_NONE };
+    *row = hl_plan_row(caps, caps->profile.depth, HL_FORMAT_NONE, use,
+                       samples);
+    if (*row)
+        return (*row)->format;
+    return caps->profile.depth[0].format
+           ? HL_FORMAT_NONE : hl_format_pick(caps, depths, use, samples);
+}
+
+static bool float_depth(enum hl_format f)
+{
+    return f == HL_FORMAT_D32_FLOAT || f == HL_FORMAT_D32_FLOAT_S8 ||
+           f == HL_FORMAT_D24_FLOAT_S8;
+}
+
 enum hl_refusal hl_plan_frame_targets(struct hl_plan *p,
                                       const struct hl_ask *ask,
                                       uint32_t blends)
@@ -61,38 +98,42 @@ enum hl_refusal hl_plan_frame_targets(struct hl_plan *p,
     const struct hl_caps *caps = ask->caps;
     uint32_t s = p->samples, w = p->width, h = p->height;
     int use = HL_USE_TARGET | HL_USE_SAMPLED | (blends ? HL_USE_BLEND : 0);
-    enum hl_format color = HL_FORMAT_NONE;
-    const enum hl_format list[] = { HL_FORMAT_RGBA16_FLOAT,
-                                    HL_FORMAT_RGBA32_FLOAT, HL_FORMAT_NONE };
-    for (int i = 0; list[i]; i++) {
-        if (!hl_format_usable(caps, list[i], use, s))
-            continue;
-        color = list[i];
-        if (color_good_enough(color, blends, ask->n.max_error))
-            break;
-    }
+    const struct hl_profile_format *row =
+        hl_plan_row(caps, caps->profile.color, HL_FORMAT_NONE, use, s);
+    enum hl_format color = row ? row->format
+                           : caps->profile.color[0].format ? HL_FORMAT_NONE
+                           : pick_color(ask, use, s, blends);
     if (color == HL_FORMAT_NONE)
         return HL_REFUSED_COLOR_FORMAT;
-    const enum hl_format depths[] = { HL_FORMAT_D32_FLOAT,
-                                      HL_FORMAT_D24_UNORM_S8,
-                                      HL_FORMAT_D16_UNORM, HL_FORMAT_NONE };
-    enum hl_format depth = hl_format_pick(caps, depths, HL_USE_TARGET, s);
-    if (depth == HL_FORMAT_NONE)
-        return HL_REFUSED_DEPTH_FORMAT;
     struct hl_plan_target *t = hl_plan_add_target(p, HL_ROLE_COLOR, color, w,
                                                   h, s);
-    t->error = hl_accumulation_error(color, blends);
-    hl_plan_add_target(p, HL_ROLE_DEPTH, depth, w, h, s);
-    if (s > 1)
-        hl_plan_add_target(p, HL_ROLE_RESOLVED, color, w, h, 1);
-    hl_plan_why(p, HL_WHY_COLOR_FORMAT, (float)color, (float)blends, t->error,
+    float error = hl_accumulation_error(color, blends);
+    t->error = error;
+    hl_plan_keep(p, t, caps, row, true);
+    const struct hl_profile_format *depth_row;
+    enum hl_format depth = hl_plan_depth_format(caps, HL_USE_TARGET, s,
+                                                &depth_row);
+    if (depth == HL_FORMAT_NONE)
+        return HL_REFUSED_DEPTH_FORMAT;
+    t = hl_plan_add_target(p, HL_ROLE_DEPTH, depth, w, h, s);
+    hl_plan_keep(p, t, caps, depth_row, false);
+    if (s > 1) {
+        t = hl_plan_add_target(p, HL_ROLE_RESOLVED, color, w, h, 1);
+        hl_plan_keep(p, t, caps, row, true);
+    }
+    hl_plan_why(p, HL_WHY_COLOR_FORMAT, (float)color, (float)blends, error,
                 ask->n.max_error);
+    /* Codes of sRGB in the dark: 12.92 x 255 a unit. */
+    if (color == HL_FORMAT_RGB10A2_FLOAT)
+        hl_plan_why(p, HL_WHY_COLOR_STEP, 0.25f, 1.0f / 512,
+                    12.92f * 255 / 512, 0);
     return HL_REFUSED_NOTHING;
 }
 
-void hl_plan_common(struct hl_plan *p, const struct hl_ask *ask)
+enum hl_refusal hl_plan_common(struct hl_plan *p, const struct hl_ask *ask)
 {
     const struct hl_needs *n = &ask->n;
+    const struct hl_profile_format *row;
     p->width = n->width;
     p->height = n->height;
     p->samples = n->samples;
@@ -100,17 +141,19 @@ void hl_plan_common(struct hl_plan *p, const struct hl_ask *ask)
     p->falloff = n->lights & 3u;
     p->kinds = n->lights & HL_LIGHTS_CONES ? 1 : 0;
     p->exponent = n->exponent;
-    p->light_scale = 1.0f;
+    p->light_scale = p->light_out = 1.0f;
     /* Floating point depth is finest near zero, where 1/z puts the far
      * half of the scene: reversed, the error is the same share of z. */
-    p->reversed_depth = hl_format_usable(ask->caps, HL_FORMAT_D32_FLOAT,
-                                         HL_USE_TARGET | HL_USE_SAMPLED, 1);
+    p->reversed_depth = float_depth(
+        hl_plan_depth_format(ask->caps, HL_USE_TARGET | HL_USE_SAMPLED, 1,
+                             &row));
     if (p->reversed_depth)
         hl_plan_why(p, HL_WHY_DEPTH_REVERSED, 0, 0, 0, 0);
     if (n->samples > 1)
         hl_plan_why(p, HL_WHY_SAMPLES, (float)n->samples, 0, 0, 0);
     if (n->n_lights == 0)
         hl_plan_why(p, HL_WHY_NO_LIGHTS, 0, 0, 0, 0);
+    return hl_plan_profile(p, ask);
 }
 
 void hl_plan_finish(struct hl_plan *p, const struct hl_ask *ask,
@@ -143,6 +186,8 @@ static bool good(float x, float low, float high)
 static enum hl_refusal check(const struct hl_needs *n,
                              const struct hl_caps *caps)
 {
+    uint32_t counts = caps->profile.samples ? caps->profile.samples
+                                              & caps->samples : caps->samples;
     if (n->width == 0 || n->height == 0 || n->width > caps->max_tex_dim ||
         n->height > caps->max_tex_dim)
         return HL_REFUSED_SIZE;
@@ -151,7 +196,7 @@ static enum hl_refusal check(const struct hl_needs *n,
         (n->light_width == 0) != (n->light_height == 0))
         return HL_REFUSED_LIGHT_SIZE;
     if (n->samples > 8 || (n->samples & (n->samples - 1)) ||
-        (n->samples && !(caps->samples & n->samples)))
+        (n->samples && !(counts & n->samples)))
         return HL_REFUSED_SAMPLES;
     if ((n->batch && n->batch > HL_BATCH_MAX) ||
         (n->tile && (n->tile < 8 || n->tile > 256)) ||
@@ -159,11 +204,13 @@ static enum hl_refusal check(const struct hl_needs *n,
         (unsigned)n->light_path > HL_LIGHT_PATH_LISTS ||
         (unsigned)n->dsf > HL_DSF_CONSTANT_TAU ||
         (unsigned)n->specular > HL_NEED_EXPONENTS ||
+        (unsigned)n->half_pixel > HL_HALF_PIXEL_VERTEX ||
         !good(n->lights_per_pixel, 0, 1e9f) ||
         !good(n->lights_per_object, 0, 1e9f) || !good(n->far, 0, 1e9f) ||
         !good(n->dsf_k, 0, 1e3f) || !good(n->dsf_c, 0, 1) ||
         !good(n->dsf_tau, 0, 1) || !good(n->peak, 0, 1e30f) ||
-        !good(n->max_error, 0, 255) || !good(n->exponent, 0, 256))
+        !good(n->max_error, 0, 255) || !good(n->exponent, 0, 256) ||
+        hl_profile_fault(&caps->profile))
         return HL_REFUSED_VALUE;
     return HL_REFUSED_NOTHING;
 }
@@ -205,6 +252,8 @@ static enum hl_refusal plan_one(struct hl_plan *out, enum hl_pipeline pipeline,
     return planners[pipeline](out, ask);
 }
 
+/* A light size that was asked for and does not fit refuses the whole: to
+ * draw forward instead would hide it. */
 static enum hl_refusal plan_auto(struct hl_plan *out, const struct hl_ask *ask)
 {
     enum hl_refusal why = HL_REFUSED_PIPELINE;
@@ -213,7 +262,15 @@ static enum hl_refusal plan_auto(struct hl_plan *out, const struct hl_ask *ask)
     for (int i = 1; i < HL_PIPELINE_COUNT; i++) {
         enum hl_refusal r = plan_one(&one, (enum hl_pipeline)i, ask, true);
         if (r != HL_REFUSED_NOTHING) {
+            /* The first one's reasons, should none be drawn. */
+            if (why == HL_REFUSED_PIPELINE && best < 0)
+                *out = one;
             why = why == HL_REFUSED_PIPELINE ? r : why;
+            if (r == HL_REFUSED_EDRAM && i == HL_PIPELINE_INFERRED &&
+                ask->n.light_width) {
+                *out = one;
+                return r;
+            }
             continue;
         }
         if (best >= 0 && one.cost_ms >= best) {
@@ -229,6 +286,16 @@ static enum hl_refusal plan_auto(struct hl_plan *out, const struct hl_ask *ask)
     out->reason[0].arg[1] = best;
     out->reason[0].arg[2] = second;
     return HL_REFUSED_NOTHING;
+}
+
+static void only_reasons(struct hl_plan *p)
+{
+    struct hl_plan_reason r[HL_PLAN_REASONS];
+    uint32_t n = p->n_reasons;
+    memcpy(r, p->reason, sizeof r);
+    memset(p, 0, sizeof *p);
+    memcpy(p->reason, r, sizeof r);
+    p->n_reasons = n;
 }
 
 enum hl_result hl_plan_make(struct hl_plan *out, enum hl_pipeline pipeline,
@@ -254,6 +321,6 @@ enum hl_result hl_plan_make(struct hl_plan *out, enum hl_pipeline pipeline,
                                         : plan_one(out, pipeline, &ask, false);
     if (*why == HL_REFUSED_NOTHING)
         return HL_OK;
-    memset(out, 0, sizeof *out);
+    only_reasons(out);
     return HL_ERR_UNSUPPORTED;
 }

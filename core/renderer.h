@@ -42,6 +42,7 @@ struct hl_renderer {
     hl_tex target[HL_ROLE_COUNT];
     hl_tex inspect_color, inspect_depth;
     hl_prog light_prog[LIGHT_SIZES][2], list_prog, count_prog, count_tiles;
+    hl_prog depth_copy;
     hl_buf uniform[FRAMES], list[FRAMES], tiles[FRAMES];
     uint32_t frame;          /* which of FRAMES                              */
     struct hl_arena arena, lists;
@@ -65,10 +66,15 @@ struct hl_renderer {
     /* Pass under construction: draws beyond max_draws go out early. */
     struct hl_pass pass;
     bool counting;           /* draw light counts in place of light          */
+    enum hl_format count_format;   /* blendable; a light counts as 1 /      */
+    float count_steps;             /* count_steps of its range               */
     enum hl_result result;
 };
 
-/* frame_setup.c */
+/* frame_program.c */
+/* A plan's pass of a role; NULL where it has none. */
+const struct hl_plan_pass *hl_plan_pass(const struct hl_plan *,
+                                        enum hl_pass_role);
 /* Lights of size class i. */
 uint32_t hl_light_size(const struct hl_plan *, uint32_t i);
 hl_prog hl_light_program(struct hl_renderer *, uint32_t lights, bool add,
@@ -78,6 +84,12 @@ enum hl_result hl_surface_program(struct hl_renderer *, uint32_t surface,
 enum hl_result hl_screen_program(struct hl_renderer *, enum hl_shader fragment,
                                  enum hl_format color, enum hl_blend blend,
                                  uint32_t batch, hl_prog *out);
+
+/* All that frames draw with; those of hl_frame_inspect come on first use. */
+enum hl_result hl_programs_make(struct hl_renderer *);
+
+/* frame_inspect.c */
+void hl_inspect_set_up(struct hl_renderer *);
 
 /* frame_data.c: check, cull and gather; HL_OK or why not. */
 enum hl_result hl_frame_gather(struct hl_renderer *, const struct hl_frame *);

@@ -55,7 +55,9 @@ struct hl_surface {
     /* A material fragment stage of the embedder's own for the inferred
      * pipeline (include shaders/inferred.glsl), or NULL. It writes location
      * 0. Its items bring material_block for uniform slot 2; textures and
-     * masked are 0. Forward plans refuse it (HL_ERR_UNSUPPORTED). */
+     * masked are 0. Forward plans refuse it (HL_ERR_UNSUPPORTED). Plans with
+     * float_taps (consoles) need the stage compiled with HL_FLOAT_TAPS
+     * defined before the include, others without. */
     const struct hl_code *own_material;
 };
 

@@ -39,6 +39,7 @@ struct hl_bk_pass {
     uint32_t n_colors;
     struct hl_bk_target depth;          /* slot HL_NO_SLOT: none             */
     bool depth_read_only;
+    bool half_pixel_offset;  /* only where caps.profile.integer_centers      */
     uint32_t width, height, samples;
 };
 
@@ -50,7 +51,8 @@ struct hl_backend {
 
     enum hl_result (*list)(const struct hl_hooks *, struct hl_device_info *,
                            uint32_t max, uint32_t *n);
-    /* Fill caps. The desc stays valid until close. */
+    /* Fill caps, all but the profile that the desc gives, whose rules hal.c
+     * applies. The desc stays valid until close. */
     enum hl_result (*open)(void *state, struct hl_device *,
                            const struct hl_device_desc *, struct hl_caps *);
     void (*close)(void *state);

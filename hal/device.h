@@ -21,7 +21,7 @@ struct hl_prog_state {
     enum hl_format depth;
     uint32_t n_colors, samples;
     uint32_t streams;        /* bits: streams that the layout reads          */
-    bool depth_write;
+    bool depth_write;        /* depth or stencil                             */
 };
 
 struct hl_device {
@@ -52,4 +52,18 @@ enum hl_result hl_refuse(struct hl_device *, enum hl_result, enum hl_log_id,
 enum hl_result hl_refuse_number(struct hl_device *, enum hl_result,
                                 enum hl_log_id, const char *what,
                                 uint64_t number, const char *why);
+
+/* check_prog.c: refuse, or fill the zeros with their defaults. */
+enum hl_result hl_check_prog(struct hl_device *, struct hl_prog_desc *);
+bool hl_stencil_writes(const struct hl_stencil *);
+/* console.c. p NULL is good. */
+enum hl_result hl_profile_check(struct hl_device *,
+                                const struct hl_profile *p);
+/* Keep `asked`, or what the backend said, or "native"; lay its rules on the
+ * caps. */
+void hl_profile_apply(struct hl_caps *, const struct hl_profile *asked);
+enum hl_result hl_console_check(struct hl_device *,
+                                const struct hl_tex_desc *);
+/* May a depth texture be sampled as its desc's sample_as? */
+bool hl_depth_as_color(const struct hl_caps *, const struct hl_tex_desc *);
 #endif

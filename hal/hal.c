@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Zlib */
 /* The dispatcher: devices, handle pools, buffers, textures and programs.
- * Validation happens here once; backends trust what they are given. */
+ * Validation happens once, here and in hal/check_prog.c, console.c and
+ * pass.c; backends trust what they are given. */
 #include <string.h>
 #include "hal/device.h"
 #include "hal/text.h"
@@ -239,11 +240,17 @@ enum hl_result hl_device_open(struct hl_device **out,
     d->desc = *desc;
     enum hl_result r = device_pools(d) ? HL_OK : HL_ERR_MEMORY;
     if (r == HL_OK)
+        r = hl_profile_check(d, d->desc.profile);
+    if (r == HL_OK)
         r = backend->open(d->state, d, &d->desc, &d->caps);
+    if (r == HL_OK)
+        hl_profile_apply(&d->caps, d->desc.profile);
     d->caps.uniform_align += d->caps.uniform_align == 0;
     d->caps.storage_align += d->caps.storage_align == 0;
-    /* The names in the desc are borrowed for this call only. */
+    /* What the desc points to is borrowed for this call only. */
     d->desc.device = no_desc.device;
+    if (d->desc.profile)
+        d->desc.profile = &d->caps.profile;
     if (r != HL_OK) {
         device_free(d);
         return r;
@@ -415,8 +422,9 @@ static enum hl_result check_tex(struct hl_device *d, struct hl_tex_desc *t)
         (t->sample_as != t->format &&
          (hl_format_info(t->sample_as)->bytes !=
           hl_format_info(t->format)->bytes ||
-          hl_format_info(t->format)->kind == HL_KIND_DEPTH ||
-          hl_format_info(t->sample_as)->kind == HL_KIND_DEPTH)))
+          ((hl_format_info(t->format)->kind == HL_KIND_DEPTH ||
+            hl_format_info(t->sample_as)->kind == HL_KIND_DEPTH) &&
+           !hl_depth_as_color(&d->caps, t)))))
         return hl_refuse(d, HL_ERR_INVALID, HL_MSG_FORMAT,
                          "hl_tex_desc.sample_as",
                          "not a colour format of the same texel size");
@@ -438,7 +446,7 @@ static enum hl_result check_tex(struct hl_device *d, struct hl_tex_desc *t)
         return hl_refuse_number(d, HL_ERR_UNSUPPORTED, HL_MSG_FORMAT,
                                 "hl_tex_desc.samples", t->samples,
                                 " is not a sample count of this format here");
-    return HL_OK;
+    return hl_console_check(d, t);
 }
 
 enum hl_result hl_tex_create(struct hl_device *d, hl_tex *out,
@@ -546,106 +554,6 @@ enum hl_result hl_tex_read(struct hl_device *d, hl_tex tex, void *out,
 
 /* ---- programs ----------------------------------------------------------- */
 
-static bool stage_empty(const struct hl_stage *s)
-{
-    return s->builtin == HL_SHADER_NONE && !s->code;
-}
-
-static bool is_depth(enum hl_format format)
-{
-    return hl_format_info(format)->kind == HL_KIND_DEPTH;
-}
-
-static enum hl_result check_targets(struct hl_device *d,
-                                    const struct hl_prog_desc *p)
-{
-    if (p->n_colors > HL_MAX_COLORS || p->n_colors > d->caps.max_colors)
-        return hl_refuse_number(d, HL_ERR_UNSUPPORTED, HL_MSG_ARGUMENT,
-                                "hl_prog_desc.n_colors", p->n_colors,
-                                " is more than the device has");
-    if (p->samples & (p->samples - 1) || !(d->caps.samples & p->samples))
-        return hl_refuse_number(d, HL_ERR_UNSUPPORTED, HL_MSG_FORMAT,
-                                "hl_prog_desc.samples", p->samples,
-                                " is not a sample count of this device");
-    for (uint32_t i = 0; i < p->n_colors; i++) {
-        if ((unsigned)p->color[i] >= HL_FORMAT_COUNT || is_depth(p->color[i]))
-            return hl_refuse_number(d, HL_ERR_INVALID, HL_MSG_FORMAT,
-                                    "hl_prog_desc.color", i,
-                                    " is not a colour format");
-        const struct hl_format_caps *f = &d->caps.format[p->color[i]];
-        int need = HL_USE_TARGET;
-        if (p->blend != HL_BLEND_OFF)
-            need |= HL_USE_BLEND;
-        if ((f->use & need) != need || !(f->samples & p->samples))
-            return hl_refuse(d, HL_ERR_UNSUPPORTED, HL_MSG_FORMAT,
-                             hl_format_info(p->color[i])->name,
-                             "not a target with this blend or sample count");
-    }
-    if (p->depth == HL_FORMAT_NONE)
-        return HL_OK;
-    if (!is_depth(p->depth))
-        return hl_refuse(d, HL_ERR_INVALID, HL_MSG_FORMAT,
-                         "hl_prog_desc.depth", "not a depth format");
-    const struct hl_format_caps *z = &d->caps.format[p->depth];
-    if (!(z->use & HL_USE_TARGET) || !(z->samples & p->samples))
-        return hl_refuse(d, HL_ERR_UNSUPPORTED, HL_MSG_FORMAT,
-                         hl_format_info(p->depth)->name,
-                         "not a target with this sample count");
-    return HL_OK;
-}
-
-/* Every enum is an index into some backend's table. */
-static enum hl_result check_enums(struct hl_device *d,
-                                  const struct hl_prog_desc *p)
-{
-    const char *bad = (unsigned)p->blend > HL_BLEND_MAX ? "hl_prog_desc.blend"
-        : (unsigned)p->depth_test > HL_COMPARE_ALWAYS
-          ? "hl_prog_desc.depth_test"
-        : (unsigned)p->cull > HL_CULL_FRONT ? "hl_prog_desc.cull"
-        : (unsigned)p->topology > HL_TOPOLOGY_LINES ? "hl_prog_desc.topology"
-                                                    : NULL;
-    if (bad)
-        return hl_refuse(d, HL_ERR_INVALID, HL_MSG_ARGUMENT, bad,
-                         "not one of its enum");
-    for (int i = 0; i < HL_MAX_ATTRS; i++) {
-        const struct hl_attr *a = &p->layout.attr[i];
-        if (a->format != HL_ATTR_NONE &&
-            ((unsigned)a->format > HL_ATTR_F16X4 ||
-             a->stream >= HL_MAX_STREAMS))
-            return hl_refuse_number(d, HL_ERR_INVALID, HL_MSG_ARGUMENT,
-                                    "hl_prog_desc.layout.attr", (uint64_t)i,
-                                    " names a format or stream that does not"
-                                    " exist");
-    }
-    return HL_OK;
-}
-
-static enum hl_result check_prog(struct hl_device *d, struct hl_prog_desc *p)
-{
-    if (p->samples == 0)
-        p->samples = 1;
-    if (stage_empty(&p->vertex))
-        return hl_refuse(d, HL_ERR_INVALID, HL_MSG_ARGUMENT,
-                         "hl_prog_desc.vertex", "no stage");
-    if (stage_empty(&p->fragment) && p->n_colors > 0)
-        return hl_refuse(d, HL_ERR_INVALID, HL_MSG_ARGUMENT,
-                         "hl_prog_desc.fragment", "colours but no stage");
-    if ((unsigned)p->vertex.builtin >= HL_SHADER_COUNT ||
-        (unsigned)p->fragment.builtin >= HL_SHADER_COUNT)
-        return hl_refuse(d, HL_ERR_INVALID, HL_MSG_ARGUMENT,
-                         "hl_prog_desc", "no such built-in stage");
-    if (p->n_specs > HL_MAX_SPECS)
-        return hl_refuse_number(d, HL_ERR_INVALID, HL_MSG_ARGUMENT,
-                                "hl_prog_desc.n_specs", p->n_specs,
-                                " is too many");
-    if (p->depth_test == HL_COMPARE_OFF && p->depth_write)
-        return hl_refuse(d, HL_ERR_INVALID, HL_MSG_ARGUMENT,
-                         "hl_prog_desc.depth_write",
-                         "needs a depth test (HL_COMPARE_ALWAYS)");
-    enum hl_result r = check_enums(d, p);
-    return r == HL_OK ? check_targets(d, p) : r;
-}
-
 enum hl_result hl_prog_create(struct hl_device *d, hl_prog *out,
                               const struct hl_prog_desc *desc)
 {
@@ -655,7 +563,7 @@ enum hl_result hl_prog_create(struct hl_device *d, hl_prog *out,
     struct hl_prog_desc p = *desc;
     if (d->lost)
         return HL_ERR_DEVICE_LOST;
-    enum hl_result r = check_prog(d, &p);
+    enum hl_result r = hl_check_prog(d, &p);
     if (r != HL_OK)
         return r;
     struct hl_pool *pool = &d->pool[HL_POOL_PROG];
@@ -673,7 +581,7 @@ enum hl_result hl_prog_create(struct hl_device *d, hl_prog *out,
     s->n_colors = p.n_colors;
     s->depth = p.depth;
     s->samples = p.samples;
-    s->depth_write = p.depth_write;
+    s->depth_write = p.depth_write || hl_stencil_writes(&p.stencil);
     s->streams = 0;
     for (int i = 0; i < HL_MAX_ATTRS; i++)
         if (p.layout.attr[i].format != HL_ATTR_NONE)

@@ -119,10 +119,12 @@ struct hl_tex_desc {
     uint32_t mips;           /* levels; 0 = 1                                */
     uint32_t usage;          /* HL_TEX_* bits; 0 = SAMPLED                   */
     /* Format as which shaders sample it: the same bytes reinterpreted, as a
-     * texture view or a console's remap does. Equal texel size, not depth;
+     * texture view or a console's remap does. Equal texel size; depth only
+     * as a pair of the profile's depth list, where caps.console_memory;
      * 0 = format. */
     enum hl_format sample_as;
-    /* How a console keeps it (hal/profile.h); all zero elsewhere. */
+    /* How a console keeps it (hal/profile.h); all zero where not
+     * caps.console_memory. */
     struct hl_console console;
 };
 
@@ -208,8 +210,9 @@ enum hl_stencil_op {
     HL_STENCIL_INCREMENT_WRAP, HL_STENCIL_DECREMENT_WRAP, HL_STENCIL_INVERT
 };
 struct hl_stencil_face {
-    enum hl_compare test;    /* reference against stored, both masked; OFF
-                              * on both faces: no stencil                    */
+    enum hl_compare test;    /* reference against stored, both masked; OFF:
+                              * passes, and all must be KEEP; OFF on both
+                              * faces: no stencil                            */
     enum hl_stencil_op fail, depth_fail, pass;
 };
 struct hl_stencil {

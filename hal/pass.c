@@ -33,6 +33,10 @@ static enum hl_result take_target(struct hl_device *d, struct hl_bk_pass *p,
         (hl_format_info(x->format)->kind == HL_KIND_DEPTH) != depth)
         return hl_refuse(d, HL_ERR_INVALID, HL_MSG_ARGUMENT, "hl_pass target",
                          "its texture is not made for this use");
+    if (depth && t->load == HL_LOAD_CLEAR &&
+        !(t->clear[1] >= 0.0f && t->clear[1] <= 255.0f))
+        return hl_refuse(d, HL_ERR_INVALID, HL_MSG_ARGUMENT,
+                         "hl_target.clear[1]", "not a stencil of 0..255");
     if (p->width == 0) {
         p->width = x->width;
         p->height = x->height;
@@ -70,6 +74,41 @@ static bool twice(const struct hl_bk_pass *p, uint32_t i)
     return false;
 }
 
+/* EDRAM tiles first..first+n of a target whose place the caller chose. */
+static bool placed(const struct hl_device *d, uint32_t slot, uint64_t *first,
+                   uint64_t *n)
+{
+    if (slot == HL_NO_SLOT || d->texs[slot].console.edram_tile == 0)
+        return false;
+    const struct hl_tex_desc *t = &d->texs[slot];
+    *first = t->console.edram_tile - 1u;
+    *n = hl_edram_tiles(&d->caps.profile, t->format, t->width, t->height,
+                        t->samples);
+    return true;
+}
+
+/* Two targets of one pass would draw over each other, in an order that
+ * nobody has fixed. Addresses wrap at the EDRAM's end. */
+static bool overlap(const struct hl_device *d, uint32_t a, uint32_t b)
+{
+    uint64_t a0, an, b0, bn, all = d->caps.profile.edram_tiles;
+    if (!placed(d, a, &a0, &an) || !placed(d, b, &b0, &bn))
+        return false;
+    return (b0 + all - a0) % all < an || (a0 + all - b0) % all < bn;
+}
+
+static bool overlapping(const struct hl_device *d, const struct hl_bk_pass *p)
+{
+    for (uint32_t i = 0; i < p->n_colors; i++) {
+        if (overlap(d, p->color[i].slot, p->depth.slot))
+            return true;
+        for (uint32_t k = 0; k < i; k++)
+            if (overlap(d, p->color[i].slot, p->color[k].slot))
+                return true;
+    }
+    return false;
+}
+
 static enum hl_result take_targets(struct hl_device *d, struct hl_bk_pass *o,
                                    const struct hl_pass *p)
 {
@@ -77,8 +116,13 @@ static enum hl_result take_targets(struct hl_device *d, struct hl_bk_pass *o,
     o->label = p->label ? p->label : "";
     o->n_colors = p->n_colors;
     o->depth_read_only = p->depth_read_only;
+    o->half_pixel_offset = p->half_pixel_offset;
     o->depth.slot = HL_NO_SLOT;
     o->depth.resolve = HL_NO_SLOT;
+    if (p->half_pixel_offset && !d->caps.profile.integer_centers)
+        return hl_refuse(d, HL_ERR_INVALID, HL_MSG_ARGUMENT,
+                         "hl_pass.half_pixel_offset",
+                         "this machine's pixel centres are at halves");
     if (p->n_colors > HL_MAX_COLORS || p->n_colors > d->caps.max_colors)
         return hl_refuse_number(d, HL_ERR_INVALID, HL_MSG_ARGUMENT,
                                 "hl_pass.n_colors", p->n_colors,
@@ -107,12 +151,16 @@ static enum hl_result take_targets(struct hl_device *d, struct hl_bk_pass *o,
 
 /* ---- draws -------------------------------------------------------------- */
 
-static bool is_target(const struct hl_bk_pass *p, uint32_t slot)
+/* Targets that no draw of the pass may sample. */
+static bool is_target(const struct hl_device *d, const struct hl_bk_pass *p,
+                      uint32_t slot)
 {
+    bool readable = p->depth_read_only &&
+                    !d->caps.profile.depth_copy_if_bound;
     for (uint32_t i = 0; i < p->n_colors; i++)
         if (p->color[i].slot == slot || p->color[i].resolve == slot)
             return true;
-    return p->depth.slot == slot && !p->depth_read_only;
+    return p->depth.slot == slot && !readable;
 }
 
 static bool prog_fits(const struct hl_device *d, const struct hl_bk_pass *p,
@@ -190,7 +238,7 @@ static const char *take_textures(struct hl_device *d, struct hl_bk_draw *o,
         if (b->filter != HL_FILTER_NEAREST &&
             !(d->caps.format[d->texs[t->slot].sample_as].use & HL_USE_LINEAR))
             return ": filters a format that this device only fetches";
-        if (is_target(p, t->slot))
+        if (is_target(d, p, t->slot))
             return ": samples a target of its own pass";
     }
     return NULL;
@@ -299,6 +347,9 @@ enum hl_result hl_pass_run(struct hl_device *d, const struct hl_pass *pass)
         return HL_ERR_DEVICE_LOST;
     struct hl_bk_pass p;
     enum hl_result r = take_targets(d, &p, pass);
+    if (r == HL_OK && overlapping(d, &p))
+        r = hl_refuse(d, HL_ERR_INVALID, HL_MSG_ARGUMENT, "hl_pass",
+                      "two of its targets lie on the same EDRAM tiles");
     if (r != HL_OK)
         return r;
     if (!reserve_draws(d, pass->n_draws))

@@ -37,7 +37,7 @@ struct hl_profile_format {
     enum hl_format format;   /* NONE ends a list                             */
     enum hl_format sample_as; /* NONE = format                               */
     uint8_t on;              /* enum hl_on                                   */
-    uint8_t two16;           /* HL_TWO16_* of shaders/shared/block.h         */
+    uint8_t two16;           /* HL_TWO16_* of shaders/shared/pack.h          */
     uint8_t depth_read;      /* HL_DEPTH_READ_* of block.h                   */
     float range;             /* fixed point: the largest value a blend keeps,
                               * as the shader writes it; 0: floating point   */
@@ -55,7 +55,9 @@ struct hl_profile {
     struct hl_profile_format light[HL_PROFILE_FORMATS];
     struct hl_profile_format color[HL_PROFILE_FORMATS];
     struct hl_profile_format depth[HL_PROFILE_FORMATS];
-    enum hl_format no_blend[HL_PROFILE_NO_BLEND];        /* NONE ends        */
+    /* The console's own formats that do not blend; NONE ends. Taken from the
+     * caps of machines with console_memory, where nothing stands in.        */
+    enum hl_format no_blend[HL_PROFILE_NO_BLEND];
     float id_steps;          /* an id is stored as id / id_steps; 0 = 65535  */
     uint32_t samples;        /* mask of sample counts; 0: all of the machine */
     /* EDRAM; tiles 0: there is none. A tile holds width x height samples of
@@ -72,4 +74,11 @@ struct hl_profile {
     bool integer_centers;    /* Direct3D 9 pixel centres                     */
     bool big_endian;
 };
+
+/* First broken rule of a profile, which no device can be opened with and no
+ * plan made for; NULL when it is sound. A name may be empty here. */
+const char *hl_profile_fault(const struct hl_profile *);
+/* EDRAM tiles of a target; 0 on machines without EDRAM. */
+uint64_t hl_edram_tiles(const struct hl_profile *, enum hl_format format,
+                        uint32_t width, uint32_t height, uint32_t samples);
 #endif

@@ -2,12 +2,17 @@
 #include <string.h>
 #include "platforms/gl/hl_gl.h"
 #include "platforms/null/hl_null.h"
+#include "platforms/packemu/hl_packemu.h"
 #include "platforms/platforms.h"
 #include "platforms/vulkan/hl_vulkan.h"
 
+/* HL_NO_DRIVERS: of those that need the C library alone. */
 static const struct hl_backend *const list[] = {
+#ifndef HL_NO_DRIVERS
     &hl_backend_vulkan,
     &hl_backend_gl,
+#endif
+    &hl_backend_packemu,
     &hl_backend_null,
 };
 

@@ -6,6 +6,8 @@
 #define HL_NORMALS
 #include "shaders/surface.glsl"
 
+layout(constant_id = HL_SPEC_TWO16) const uint hl_spec_two16 = 0u;
+layout(constant_id = HL_SPEC_ID_STEPS) const float hl_spec_id_steps = 65535.0;
 layout(location = HL_VARY_IDS) flat in vec4 v_ids;
 layout(location = 0) out vec4 out_normal;
 layout(location = 1) out vec4 out_dsf;
@@ -20,9 +22,11 @@ void main()
         hl_alpha_test(hl_base_color().a);
 #endif
     vec2 e = hl_normal_encode(hl_read_normal());
-    out_normal = vec4(hl_snorm_to_unorm(e.x), hl_snorm_to_unorm(e.y), 0.0, 1.0);
-    out_dsf = vec4(hl_depth_encode(1.0 / gl_FragCoord.w, v_ids.z),
-                   hl_id_encode(v_ids.x, 1.0 / 65535.0), 0.0, 1.0);
+    out_normal = hl_two16_encode(hl_spec_two16, hl_snorm_to_unorm(e.x),
+                                 hl_snorm_to_unorm(e.y));
+    out_dsf = hl_two16_encode(hl_spec_two16,
+                              hl_depth_encode(1.0 / gl_FragCoord.w, v_ids.z),
+                              hl_id_encode(v_ids.x, 1.0 / hl_spec_id_steps));
 #ifdef HL_EXPONENT
     float code = v_ids.y;
 #ifdef HL_FULL

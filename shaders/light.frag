@@ -21,10 +21,19 @@ layout(set = 2, binding = HL_SLOT_TILES, std430) readonly buffer hl_tile_block {
 layout(location = 0) flat in vec4 v_ray;
 layout(location = 1) flat in vec4 v_terms;
 #endif
-layout(constant_id = HL_SPEC_LIGHT_SCALE) const float hl_spec_scale = 1.0;
+layout(constant_id = HL_SPEC_LIGHT_OUT) const float hl_spec_light_out = 1.0;
+layout(constant_id = HL_SPEC_TWO16) const uint hl_spec_two16 = 0u;
+layout(constant_id = HL_SPEC_DEPTH_READ) const uint hl_spec_depth_read = 0u;
 layout(constant_id = HL_SPEC_LIGHT_WIDTH) const float hl_spec_light_w = 1.0;
 layout(constant_id = HL_SPEC_LIGHT_HEIGHT) const float hl_spec_light_h = 1.0;
 layout(location = 0) out vec4 out_light;
+
+float hl_read_depth(vec2 uv)
+{
+    vec4 c = texture(hl_tex_depth, uv);
+    return hl_spec_depth_read == uint(HL_DEPTH_READ_BARG)
+           ? hl_depth_barg(c.xyz) : c.x;
+}
 
 void main()
 {
@@ -39,10 +48,9 @@ void main()
      * less work where the driver checks every fetch's level and bounds. */
     vec2 uv = gl_FragCoord.xy * vec2(1.0 / hl_spec_light_w,
                                      1.0 / hl_spec_light_h);
-    float d = texture(hl_tex_depth, uv).x;
-    float z = terms.x / (d + terms.y);
+    float z = terms.x / (hl_read_depth(uv) + terms.y);
     vec3 p = vec3((gl_FragCoord.xy * ray.xy + ray.zw) * z, -z);
-    vec2 e = texture(hl_tex_normal, uv).xy;
+    vec2 e = hl_two16_decode(hl_spec_two16, texture(hl_tex_normal, uv).xy);
     vec3 n = hl_normal_decode(hl_v2(hl_unorm_to_snorm(e.x),
                                     hl_unorm_to_snorm(e.y)));
     vec3 v = -p * inversesqrt(dot(p, p));
@@ -56,6 +64,6 @@ void main()
 #else
     hl_sum s = hl_sum_batch(p, n, v, exponent);
 #endif
-    out_light = min(vec4(s.diffuse, s.intensity) / hl_spec_scale,
+    out_light = min(vec4(s.diffuse, s.intensity) * hl_spec_light_out,
                     vec4(HL_HALF_MAX));
 }

@@ -7,6 +7,7 @@
  * read in the fragment stage costs a software driver more. */
 #include "shaders/shared/block.h"
 #include "shaders/shared/pack.h"
+#include "shaders/half_pixel.glsl"
 
 layout(location = HL_ATTR_POSITION) in vec3 in_position;
 invariant gl_Position;
@@ -40,7 +41,7 @@ layout(location = HL_VARY_POSITION) out vec3 v_position;
 
 void main()
 {
-    gl_Position = hl_object.clip * vec4(in_position, 1.0);
+    gl_Position = hl_half_pixel(hl_object.clip * vec4(in_position, 1.0));
 #ifdef HL_WITH_ID
     v_ids = vec4(hl_object.ids.x + hl_tangent_w_group(in_tangent.w),
                  hl_object.flat_ids.x, hl_frame.depth.z, hl_frame.depth.w);

@@ -3,7 +3,8 @@
 /* SPDX-License-Identifier: Zlib */
 /* A table of shaders/shared functions: constant 0 says which one, texel x, y
  * of slot 0 holds its arguments, the result goes to the same texel. Slot 1
- * is a picture of two 16-bit channels that function 20 reads as words. */
+ * is a picture of two 16-bit channels that function 20 reads as words, slot
+ * 2 one that function 24 reads as numbers. */
 #include "shaders/shared/dsf.h"
 #include "shaders/shared/pack.h"
 #include "shaders/shared/shade.h"
@@ -11,6 +12,7 @@
 layout(constant_id = 0) const uint what = 0u;
 layout(set = 1, binding = 0) uniform sampler2D arguments;
 layout(set = 1, binding = 1) uniform usampler2D stored;
+layout(set = 1, binding = 2) uniform sampler2D numbers;
 layout(location = 0) out vec4 result;
 
 vec4 pack_functions(vec4 a)
@@ -68,6 +70,25 @@ vec4 read_id(vec4 a)
                 hl_dsf_accept(0.0, id, 0.0, a.z - 1.0, 1.0, 0.5), id);
 }
 
+/* The two numbers kept as mode a.w says, in steps of a.z and 65535; so that
+ * rounding of the arithmetic does not count, to the nearest step. */
+vec4 read_two16(vec4 a)
+{
+    vec2 s = texelFetch(numbers, ivec2(gl_FragCoord.xy), 0).xy;
+    vec2 v = hl_two16_decode(uint(a.w), s);
+    return vec4(v, floor(v.y * a.z + 0.5), abs(v.y * a.z - a.y));
+}
+
+vec4 console_functions(vec4 a)
+{
+    if (what == 22u)
+        return hl_two16_encode(uint(a.w), a.x, hl_id_encode(a.y, 1.0 / a.z));
+    if (what == 23u)
+        return vec4(hl_two16_decode(uint(a.w), a.xy), hl_depth_barg(a.xyz),
+                    0.0);
+    return read_two16(a);
+}
+
 void main()
 {
     vec4 a = texelFetch(arguments, ivec2(gl_FragCoord.xy), 0);
@@ -76,6 +97,8 @@ void main()
     else if (what == 21u)
         result = vec4(hl_snorm_to_unorm(a.x), hl_snorm_to_unorm(a.y), 0.0,
                       1.0);
+    else if (what >= 22u)
+        result = console_functions(a);
     else
         result = what < 6u ? pack_functions(a)
                  : what < 10u ? shade_functions(a) : filter_functions(a);

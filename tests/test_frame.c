@@ -581,7 +581,8 @@ static void statistics_count(void **state)
 }
 
 #define BOTH(name) \
-    CK_ON("null", name), CK_ON("vulkan", name), CK_ON("gl", name)
+    CK_ON("null", name), CK_ON("vulkan", name), CK_ON("gl", name), \
+    CK_ON("packemu", name)
 
 int main(void)
 {

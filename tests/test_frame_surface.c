@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "tests/frame_kit.h"
+#include "tests/solid_kernel.h"
 
 static const uint32_t solid_spirv[] = {
 #include "solid_frag.x"
@@ -433,8 +434,8 @@ struct sum {
 
 static void sum_begin(struct sum *u, struct fk_scene *s)
 {
-    static const struct hl_code code = { solid_spirv, sizeof solid_spirv,
-                                         solid_glsl, NULL };
+    static struct hl_code code = { solid_spirv, sizeof solid_spirv,
+                                   solid_glsl, NULL };
     const float one[4] = { 1, 1, 1, 1 }, zero[4] = { 0, 0, 0, 0 };
     struct hl_device *d = s->m->device;
     struct hl_tex_desc t = { .format = HL_FORMAT_RGBA32_FLOAT, .width = FK_W,
@@ -446,6 +447,7 @@ static void sum_begin(struct sum *u, struct fk_scene *s)
         .color = { HL_FORMAT_RGBA32_FLOAT }, .blend = HL_BLEND_ADD };
     struct hl_buf_desc a = { "one", 16, HL_BUF_UNIFORM, false, one };
     struct hl_buf_desc b = { "zero", 16, HL_BUF_STORAGE, false, zero };
+    code.kernel = solid_kernel();
     assert_int_equal(hl_tex_create(d, &u->tex, &t), HL_OK);
     assert_int_equal(hl_prog_create(d, &u->prog, &p), HL_OK);
     assert_int_equal(hl_buf_create(d, &u->one, &a), HL_OK);
@@ -640,7 +642,8 @@ static void rejected_taps_are_seen(void **state)
     fk_end(&s);
 }
 
-#define DRAWN(name) CK_ON("vulkan", name), CK_ON("gl", name)
+#define DRAWN(name) \
+    CK_ON("vulkan", name), CK_ON("gl", name), CK_ON("packemu", name)
 
 int main(void)
 {

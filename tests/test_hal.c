@@ -423,7 +423,7 @@ static void program_states_are_checked(void **state)
     struct ck_machine *m = ck_machine(state);
     PROG_BAD(depth_write, true, HL_ERR_INVALID, HL_MSG_ARGUMENT,
              "hl_prog_desc.depth_write");
-    PROG_BAD(blend, (enum hl_blend)(HL_BLEND_MAX + 1), HL_ERR_INVALID,
+    PROG_BAD(blend, (enum hl_blend)(HL_BLEND_SHIFT + 1), HL_ERR_INVALID,
              HL_MSG_ARGUMENT, "hl_prog_desc.blend");
     PROG_FINE(blend, HL_BLEND_MAX);
     PROG_BAD(depth_test, (enum hl_compare)(HL_COMPARE_ALWAYS + 1),
@@ -524,7 +524,8 @@ static void closing_destroys_what_is_left(void **state)
 }
 
 #define ALL(name) \
-    CK_ON("null", name), CK_ON("vulkan", name), CK_ON("gl", name)
+    CK_ON("null", name), CK_ON("vulkan", name), CK_ON("gl", name), \
+    CK_ON("packemu", name)
 
 int main(void)
 {

@@ -474,6 +474,7 @@ int main(void)
         CK_ON("null", every_allocation_may_fail),
         CK_ON("vulkan", every_allocation_may_fail),
         CK_ON("gl", every_allocation_may_fail),
+        CK_ON("packemu", every_allocation_may_fail),
         cmocka_unit_test(every_machine_call_may_fail),
         cmocka_unit_test(a_lost_device_stays_lost),
         cmocka_unit_test(pools_are_as_large_as_asked),

@@ -5,6 +5,7 @@
 #include <string.h>
 #include "platforms/platforms.h"
 #include "tests/check.h"
+#include "tests/solid_kernel.h"
 
 static const uint32_t solid_spirv[] = {
 #include "solid_frag.x"
@@ -48,8 +49,9 @@ static hl_buf buf(struct ck_machine *m, size_t bytes, uint32_t usage)
 
 static struct hl_prog_desc solid(void)
 {
-    static const struct hl_code code = { solid_spirv, sizeof solid_spirv,
-                                         solid_glsl, NULL };
+    static struct hl_code code = { solid_spirv, sizeof solid_spirv,
+                                   solid_glsl, NULL };
+    code.kernel = solid_kernel();
     struct hl_prog_desc p = {
         .label = "solid", .vertex = { HL_SHADER_SCREEN_VERT, NULL },
         .fragment = { HL_SHADER_NONE, &code }, .n_colors = 1,
@@ -479,12 +481,14 @@ static void blending_is_as_stated(void **state)
         { HL_BLEND_OVER, { 0.875f, 2.5f, 3.25f, 0.625f } },
         { HL_BLEND_ADD_ALPHA, { 1.125f, 3, 4.25f, 0.5f } },
         { HL_BLEND_MAX, { 1, 4, 4, 0.5f } },
+        { HL_BLEND_SHIFT, { 1, 5, 3, 0.5f } },     /* by one half            */
     };
     static const float under[4] = { 1, 2, 4, 0.5f };
     put(&s, 1, 0.5f, 4, 1, 0.25f);
-    for (int i = 0; i < 5; i++) {
+    for (int i = 0; i < 6; i++) {
         struct hl_prog_desc p = solid();
         p.blend = row[i].blend;
+        p.blend_constant = 0.5f;
         s.draw[0].prog = make_prog(s.m, &p);
         s.draw[0].uniform[0].offset = SLOT;
         memcpy(s.pass.color[0].clear, under, sizeof under);
@@ -547,7 +551,8 @@ static void targets_are_kept_or_cleared(void **state)
         assert_true(z[i] == 0.375f);
 }
 
-#define DRAWN(name) CK_ON("vulkan", name), CK_ON("gl", name)
+#define DRAWN(name) \
+    CK_ON("vulkan", name), CK_ON("gl", name), CK_ON("packemu", name)
 #define ALL(name) CK_ON("null", name), DRAWN(name)
 
 int main(void)

@@ -309,7 +309,8 @@ static void the_background_has_id_zero(void **state)
         assert_true((g.truth[i] == 0) == (g.stored[i][1] == 0));
 }
 
-#define DRAWN(name) CK_ON("vulkan", name), CK_ON("gl", name)
+#define DRAWN(name) \
+    CK_ON("vulkan", name), CK_ON("gl", name), CK_ON("packemu", name)
 
 int main(void)
 {

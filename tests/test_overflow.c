@@ -92,6 +92,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         CK_ON("null", data_runs_out_in_a_split_pass),
         CK_ON("vulkan", data_runs_out_in_a_split_pass),
+        CK_ON("packemu", data_runs_out_in_a_split_pass),
         CK_ON("null", own_materials_need_inferred_light),
         CK_ON("null", no_fixed_range_for_inverse_square),
     };

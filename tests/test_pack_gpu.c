@@ -26,6 +26,7 @@ struct bench {
     float (*want)[4];        /* by C                                         */
     hl_tex input, output, codes;
     hl_tex other;            /* bound where nothing is read                  */
+    hl_tex numbers;          /* {0} but while function 24 reads one          */
     uint16_t (*code)[2];
 };
 
@@ -82,10 +83,11 @@ static void draw(struct bench *b, uint32_t what, enum hl_format format,
         .label = "pack", .vertex = { HL_SHADER_SCREEN_VERT, NULL },
         .fragment = { HL_SHADER_NONE, &code }, .spec = { { 0, what } },
         .n_specs = 1, .n_colors = 1, .color = { format } };
-    struct hl_texture_binding textures[2] = { { .tex = b->input },
-                                              { .tex = second } };
+    struct hl_texture_binding textures[3] = { { .tex = b->input },
+                                              { .tex = second },
+                                              { .tex = b->numbers } };
     struct hl_draw draw = { .count = 3, .textures = textures,
-                            .n_textures = 2 };
+                            .n_textures = 3 };
     struct hl_pass pass = { .label = "pack", .n_colors = 1, .draws = &draw,
                             .n_draws = 1 };
     pass.color[0].tex = target;
@@ -439,6 +441,109 @@ static void ids_survive_the_target(void **state)
     end(b);
 }
 
+/* ---- consoles ----------------------------------------------------------- */
+
+/* Arguments: a number, an id, its steps and the mode; every id there is. */
+static void console_arguments(struct bench *b, uint32_t mode)
+{
+    float steps = mode == HL_TWO16_SIGNED || mode == HL_TWO16_FIXED32
+                  ? 65534.0f : 65535.0f;
+    uint64_t seed = mk_seed();
+    for (uint32_t i = 0; i < N; i++)
+        four(b->args[i], (float)ck_between(&seed, -0.1, 1.1),
+             i < 65534 ? (float)i : 65534.0f, steps, (float)mode);
+}
+
+/* Bytes are whole codes, floats two roundings at the size of the range; a
+ * device may keep the product's digits (one rounding less). */
+static void pairs_encode_alike(void **state)
+{
+    static const double error[] = { 1.2e-7, 2.4e-7, 7.7e-6, 0, 0 };
+    struct bench *b = begin(state);
+    for (uint32_t mode = 0; mode <= HL_TWO16_BYTES_ARGB; mode++) {
+        console_arguments(b, mode);
+        uint32_t odd = 0;
+        evaluate(b, 22);
+        for (uint32_t i = 0; i < N; i++) {
+            const float *a = b->args[i], *g = b->got[i];
+            hl_vec4 v = hl_two16_encode(mode, a[0],
+                                        hl_id_encode(a[1], 1.0f / a[2]));
+            four(b->want[i], v.x, v.y, v.z, v.w);
+            /* A code apart, where the number lies between two. */
+            if (memcmp(b->want[i], g, 16) && mode >= HL_TWO16_BYTES) {
+                double c = (double)hl_clamp01(a[0]) * 65535;
+                assert_true(fabs(c - floor(c) - 0.5) < 0.02);
+                memcpy(b->want[i], g, 16);
+                odd++;
+            }
+        }
+        assert_true(odd < N / 1000);
+        for (int c = 0; c < 4; c++)
+            compare(b, c, error[mode], 0, "hl_two16_encode");
+    }
+    end(b);
+}
+
+static void pairs_and_bytes_decode_alike(void **state)
+{
+    struct bench *b = begin(state);
+    for (uint32_t mode = 0; mode <= HL_TWO16_BYTES_ARGB; mode++) {
+        uint64_t seed = mk_seed();
+        for (uint32_t i = 0; i < N; i++) {
+            float *a = b->args[i];
+            for (int c = 0; c < 3; c++)
+                a[c] = (float)mk_below(&seed, 256) / 255.0f;
+            a[3] = (float)mode;
+            hl_vec2 v = hl_two16_decode(mode, hl_v2(a[0], a[1]));
+            four(b->want[i], v.x, v.y, hl_depth_barg(hl_v3(a[0], a[1], a[2])),
+                 0);
+        }
+        evaluate(b, 23);
+        compare(b, 0, 6e-8, 0, "hl_two16_decode");
+        compare(b, 1, 6e-8, 0, "hl_two16_decode");
+        /* The sum is exact, the quotient 2.5 ulp. */
+        compare(b, 2, 0, 2.5 * ldexp(1, -23), "hl_depth_barg");
+    }
+    end(b);
+}
+
+/* Every id through a target of each kind that stand-ins have, sampled as
+ * numbers: the nearest id is the one written, with room to spare (below half
+ * a step; two roundings of 65535 steps are 0.008). */
+static void ids_survive_as_numbers(void **state)
+{
+    static const struct {
+        enum hl_format format, sample_as;
+        uint32_t mode;
+    } row[] = {
+        { HL_FORMAT_RG16_UNORM, HL_FORMAT_NONE, HL_TWO16_UNORM },
+        { HL_FORMAT_RG16_SNORM, HL_FORMAT_NONE, HL_TWO16_SIGNED },
+        { HL_FORMAT_RGBA8_UNORM, HL_FORMAT_RG16_UNORM, HL_TWO16_BYTES }
+    };
+    struct bench *b = begin(state);
+    for (int k = 0; k < 3; k++) {
+        hl_tex none = { 0 }, t = make_tex(b->m, row[k].format,
+                                          row[k].sample_as);
+        console_arguments(b, row[k].mode);
+        draw(b, 22, row[k].format, t, b->other);
+        b->numbers = t;
+        evaluate(b, 24);
+        b->numbers = none;
+        hl_tex_destroy(b->m->device, &t);
+        for (uint32_t i = 0; i < N; i++) {
+            const float *g = b->got[i], *a = b->args[i];
+            if (g[2] != a[1] || !(g[3] < 0.01f))
+                fail_msg("mode %u, id %g: read %g, off by %g",
+                         row[k].mode, (double)a[1], (double)g[2],
+                         (double)g[3]);
+            /* Half a code, and one rounding of the product. */
+            ck_near((double)g[0], (double)hl_clamp01(a[0]),
+                    0.5 / 65534 + 6e-7);
+        }
+    }
+    end(b);
+}
+
 #define TEST(name) CK_ON("vulkan", name), CK_ON("gl", name)
 
 int main(void)
@@ -454,6 +559,9 @@ int main(void)
         TEST(filter_is_alike),
         TEST(unorm16_targets_round_to_the_next_code),
         TEST(ids_survive_the_target),
+        TEST(pairs_encode_alike),
+        TEST(pairs_and_bytes_decode_alike),
+        TEST(ids_survive_as_numbers),
     };
     return cmocka_run_group_tests_name("C and GLSL", tests, NULL, NULL);
 }

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <cmocka.h>
+#include <cjson/cJSON.h>
 #include "platforms/cli/plan_text.h"
 #include "tests/check.h"
 
@@ -50,7 +51,7 @@ static void everything_has_a_name(void **state)
         check_name(hlc_pass_name((enum hl_pass_role)i));
     for (int i = 0; i <= HL_LIGHT_PATH_LISTS; i++)
         check_name(hlc_light_path_name((enum hl_light_path)i));
-    for (int i = 0; i <= HL_BLEND_MAX; i++)
+    for (int i = 0; i <= HL_BLEND_SHIFT; i++)
         check_name(hlc_blend_name((enum hl_blend)i));
     for (int i = 0; i <= HL_COMPARE_ALWAYS; i++)
         check_name(hlc_compare_name((enum hl_compare)i));
@@ -60,6 +61,18 @@ static void everything_has_a_name(void **state)
         check_name(hlc_dsf_name(i));
     for (uint32_t i = 0; i <= HL_SPECULAR_CHANNEL; i++)
         check_name(hlc_specular_name(i));
+    for (uint32_t i = 0; i <= HL_TWO16_BYTES_ARGB; i++)
+        check_name(hlc_two16_name(i));
+    for (uint32_t i = 0; i <= HL_DEPTH_READ_BARG; i++)
+        check_name(hlc_depth_read_name(i));
+    for (int i = 0; i <= HL_HALF_PIXEL_VERTEX; i++)
+        check_name(hlc_half_pixel_name((enum hl_half_pixel)i));
+    for (int i = 0; i <= HL_DECALS_ALPHA_OBJECTS; i++)
+        check_name(hlc_decals_name((enum hl_decals)i));
+    for (uint32_t i = 0; i <= HL_NUMBER_SIGNED; i++)
+        check_name(hlc_number_name(i));
+    for (uint32_t i = 0; i <= HL_ENDIAN_16IN32; i++)
+        assert_string_not_equal(hlc_endian_name(i), "?");
     for (int i = 1; i < HL_REFUSED_COUNT; i++)
         assert_true(strlen(hlc_refusal_text((enum hl_refusal)i)) > 10);
     assert_string_equal(hlc_refusal_text(HL_REFUSED_NOTHING), "");
@@ -93,7 +106,7 @@ static void every_reason_is_a_sentence_that_fits(void **state)
                                     hlc_reason_name((enum hl_reason)k));
         hlc_reason_text(&p, 0, text, sizeof text);
         assert_true(strlen(text) > 15 && strlen(text) < 256);
-        assert_null(strpbrk(text, "#$=@&~?"));
+        assert_null(strpbrk(text, "#$=@&~^*!?"));
     }
 }
 

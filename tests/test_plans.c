@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: Zlib */
 /* Whole plans as text: what is decided for each scene and pipeline on two
- * fixed machines is kept in tests/plans.txt, and a difference is a design
- * review. HL_UPDATE=1 writes the file anew. */
+ * fixed machines, and on the consoles and their stand-ins, is kept in
+ * tests/plans.txt, and a difference is a design review. HL_UPDATE=1 writes
+ * the file anew. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include "platforms/cli/plan_text.h"
-#include "tests/check.h"
+#include "tests/console_kit.h"
 
 static const char path[] = "tests/plans.txt";
 
@@ -83,6 +84,14 @@ static void small_machine(struct hl_caps *c)
 
 /* ---- text ------------------------------------------------------------- */
 
+static void print_refusal(FILE *out, const struct hl_plan *p,
+                          enum hl_refusal why)
+{
+    char line[1024];
+    hlc_refusal_line(p, why, line, sizeof line);
+    fprintf(out, "refused: %s\n", line);
+}
+
 static void print_plan(FILE *out, const char *title, enum hl_pipeline want,
                        const struct hl_needs *n, const struct hl_caps *caps)
 {
@@ -93,8 +102,50 @@ static void print_plan(FILE *out, const char *title, enum hl_pipeline want,
     if (hl_plan_make(&p, want, n, caps, &why) == HL_OK)
         hl_plan_text(out, &p);
     else
-        fprintf(out, "refused: %s\n", hlc_refusal_text(why));
+        print_refusal(out, &p, why);
     fputc('\n', out);
+}
+
+/* Three scenes of many lights: exponents that differ, one exponent, and
+ * inverse square lights under glass. */
+static void print_console(FILE *out, const struct hl_profile *profile,
+                          bool memory)
+{
+    static const int some[] = { 1, 2, 7 };
+    struct hl_caps c;
+    con_caps(&c, profile, memory);
+    snprintf(c.device, sizeof c.device, "%s, %s", profile->name,
+             memory ? "its own memory" : "stand-ins");
+    for (int i = 0; i < 3; i++) {
+        struct hl_needs n = needs_of(some[i]);
+        if (some[i] == 7)
+            n.peak = 60000;
+        for (int p = 1; p < HL_PIPELINE_COUNT; p++)
+            print_plan(out, scenes[some[i]].name, (enum hl_pipeline)p, &n,
+                       &c);
+    }
+    struct hl_needs n = needs_of(2);
+    n.decals = n.light_depth_bound = true;
+    n.light_width = 1200;
+    n.light_height = 675;
+    print_plan(out, "fig9, decals and light volumes", HL_PIPELINE_INFERRED,
+               &n, &c);
+    n.light_width = 1280;
+    n.light_height = 720;
+    print_plan(out, "fig9, 1:1", HL_PIPELINE_INFERRED, &n, &c);
+    n.light_width = n.light_height = 0;
+    n.samples = 4;
+    print_plan(out, "fig9, 4 samples", HL_PIPELINE_INFERRED, &n, &c);
+}
+
+static void print_consoles(FILE *out)
+{
+    /* Of no kind of its own: the same plans either way. */
+    print_console(out, &hl_profile_dx10, false);
+    for (int memory = 0; memory < 2; memory++) {
+        print_console(out, &hl_profile_xbox360, memory);
+        print_console(out, &hl_profile_ps3, memory);
+    }
 }
 
 static void print_all(FILE *out)
@@ -121,6 +172,7 @@ static void print_all(FILE *out)
     n.dsf = HL_DSF_CONSTANT_TAU;
     n.light_format = HL_FORMAT_RGBA16_UNORM;
     print_plan(out, "fig8, as published", HL_PIPELINE_INFERRED, &n, &lavapipe);
+    print_consoles(out);
 }
 
 /* The whole of a stream; malloc'd, NUL-terminated. */

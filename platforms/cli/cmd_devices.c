@@ -7,6 +7,7 @@
 #include "platforms/cli/commands.h"
 #include "platforms/cli/json.h"
 #include "platforms/platforms.h"
+#include "platforms/profiles/hl_profiles.h"
 
 enum { DEVICES_MAX = 16, BACKENDS_MAX = 8 };
 
@@ -191,7 +192,9 @@ static cJSON *machines_json(const struct machine *m, uint32_t n)
 {
     cJSON *j = hlc_json_begin("devices");
     cJSON *profiles = cJSON_AddArrayToObject(j, "profiles");
-    cJSON_AddItemToArray(profiles, cJSON_CreateString("native"));
+    for (uint32_t i = 0; hl_profile_at(i); i++)
+        cJSON_AddItemToArray(profiles,
+                             cJSON_CreateString(hl_profile_at(i)->name));
     cJSON *backends = cJSON_AddArrayToObject(j, "backends");
     for (uint32_t i = 0; i < n; i++) {
         cJSON *b = cJSON_CreateObject();
@@ -222,7 +225,9 @@ static int publish(const struct machine *m, uint32_t n,
         return HLC_DONE;
     for (uint32_t i = 0; i < n; i++)
         print_machine(&m[i]);
-    printf("profiles\n  native\n");
+    printf("profiles\n");
+    for (uint32_t i = 0; hl_profile_at(i); i++)
+        printf("  %s\n", hl_profile_at(i)->name);
     return HLC_DONE;
 }
 

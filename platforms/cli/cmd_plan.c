@@ -79,7 +79,7 @@ static cJSON *to_json(const struct planned *p)
     cJSON_AddStringToObject(j, "backend", caps->backend);
     cJSON_AddStringToObject(j, "device", caps->device);
     cJSON_AddStringToObject(j, "driver", caps->driver);
-    cJSON_AddStringToObject(j, "profile", "native");
+    cJSON_AddStringToObject(j, "profile", p->plan.profile);
     cJSON_AddStringToObject(j, "pipeline",
                             hlc_pipeline_name(p->plan.pipeline));
     add_needs(j, &p->needs);

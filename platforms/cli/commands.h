@@ -18,6 +18,7 @@ int hlc_cmd_plan(const struct hlc_options *);
 int hlc_cmd_scene(const struct hlc_options *);
 int hlc_cmd_compare(const struct hlc_options *);
 int hlc_cmd_devices(const struct hlc_options *);
+int hlc_cmd_conform(const struct hlc_options *);
 
 /* Print "halflight: <text>" and a line end to stderr; return `code`. Line
  * ends inside become blanks. */

@@ -19,7 +19,8 @@ struct dump {
     struct hlh_buffer index;
 };
 
-/* What a texel looks like: v is the stored texel, rgb what is written. */
+/* What a texel looks like: v is the stored texel, its pair of numbers where
+ * the role has one; rgb what is written. */
 typedef void (*look)(const struct hlc_render *, const float v[4],
                      float rgb[3]);
 
@@ -150,16 +151,15 @@ static void as_metres(const struct hlc_render *r, const float v[4],
     rgb[0] = rgb[1] = rgb[2] = v[0] * (float)r->far;
 }
 
-static uint32_t region_of(const float v[4])
+static uint32_t region_of(const struct hlc_render *r, const float v[4])
 {
-    return (uint32_t)(v[1] * 65535.0f + 0.5f);
+    return (uint32_t)(v[1] * r->plan.id_steps + 0.5f);
 }
 
 static void as_region(const struct hlc_render *r, const float v[4],
                       float rgb[3])
 {
-    (void)r;
-    show_id(rgb, region_of(v));
+    show_id(rgb, region_of(r, v));
 }
 
 static void as_exponent(const struct hlc_render *r, const float v[4],
@@ -216,7 +216,7 @@ static const struct target_file {
 } target_files[] = {
     { HL_ROLE_NORMAL, "normal.png", "view-space normals, 0.5 + 0.5 n",
       as_normal, false },
-    { HL_ROLE_NORMAL, "normal_stored.pfm", "the G-buffer's two channels",
+    { HL_ROLE_NORMAL, "normal_stored.pfm", "the G-buffer's two numbers",
       stored, false },
     { HL_ROLE_DSF, "depth.png", "linear depth that the DSF reads, black at "
       "the eye, white at far", as_dsf_depth, false },
@@ -231,6 +231,10 @@ static const struct target_file {
       "made linear", as_z_share, false },
     { HL_ROLE_LIGHT_DEPTH, "light_depth.pfm", "the same in metres", as_z,
       false },
+    { HL_ROLE_DEPTH_COPY, "depth_copy.png", "light_depth as it is copied to be "
+      "read", as_z_share, false },
+    { HL_ROLE_DEPTH_COPY, "depth_copy.pfm", "the same in metres", as_z,
+      false },
     { HL_ROLE_LIGHT, "light_diffuse.png", "L-buffer: diffuse light",
       as_diffuse, true },
     { HL_ROLE_LIGHT, "light_diffuse.pfm", "the same, linear", as_diffuse,
@@ -244,6 +248,16 @@ static const struct target_file {
     { HL_ROLE_DEPTH, "frame_depth.pfm", "the same in metres", as_z, false },
 };
 
+static void texel_of(const struct dump *d, const struct hlc_texels *t,
+                     enum hl_role role, size_t i, float v[4])
+{
+    hlc_texel(v, t, i);
+    if (role != HL_ROLE_NORMAL && role != HL_ROLE_DSF)
+        return;
+    hlc_two16(v, d->r->plan.two16, v);
+    v[2] = 0;
+}
+
 static bool dump_look(struct dump *d, const struct hlc_texels *t,
                       const struct target_file *f)
 {
@@ -254,7 +268,7 @@ static bool dump_look(struct dump *d, const struct hlc_texels *t,
         return hlh_fail(d->error, f->name, "out of memory");
     for (size_t i = 0; i < n; i++) {
         float v[4];
-        hlc_texel(v, t, i);
+        texel_of(d, t, f->role, i, v);
         f->look(d->r, v, p.rgb + 3 * i);
     }
     bool ok = write_picture(d, f->name, f->what, &p,
@@ -271,8 +285,8 @@ static bool dump_regions(struct dump *d, const struct hlc_texels *t)
         return hlh_fail(d->error, "regions", "out of memory");
     for (size_t i = 0; i < n; i++) {
         float v[4];
-        hlc_texel(v, t, i);
-        ids[i] = region_of(v);
+        texel_of(d, t, HL_ROLE_DSF, i, v);
+        ids[i] = region_of(d->r, v);
     }
     bool ok = write_ids(d, "regions_16bit.png", "the same, as numbers", ids,
                         t->width, t->height);

@@ -24,6 +24,7 @@ static int run(const struct hlc_options *o)
     case HLC_DEVICES: return hlc_cmd_devices(o);
     case HLC_SCENE: return hlc_cmd_scene(o);
     case HLC_COMPARE: return hlc_cmd_compare(o);
+    case HLC_CONFORM: return hlc_cmd_conform(o);
     case HLC_VERSION: printf("halflight %u\n", HL_VERSION); return HLC_DONE;
     default: return help(o);
     }

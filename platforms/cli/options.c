@@ -13,7 +13,7 @@ enum kind {                  /* how a value is read and where it goes        */
     FLAG, TEXT, COUNT, REAL, SIZE,               /* straight into the member */
     BACKEND, PROFILE, PIPELINE, SAMPLES, CAMERA, AMBIENT, BACKGROUND,
     LIGHTS_MODE, DSF, LIGHT_PATH, TILE_DEPTH, SCISSOR, IDS_SCHEME,
-    LIGHT_FORMAT, MIN_PSNR, MAX_ERROR, GL_CONTEXT
+    LIGHT_FORMAT, MIN_PSNR, MAX_ERROR, GL_CONTEXT, HALF_PIXEL
 };
 
 #define R (1u << HLC_RENDER)
@@ -21,6 +21,7 @@ enum kind {                  /* how a value is read and where it goes        */
 #define D (1u << HLC_DEVICES)
 #define S (1u << HLC_SCENE)
 #define C (1u << HLC_COMPARE)
+#define F (1u << HLC_CONFORM)
 #define AT(member) offsetof(struct hlc_options, member)
 #define FLOAT_RANGE 1e9      /* well inside float, and metres enough         */
 
@@ -34,16 +35,16 @@ struct row {
 };
 
 static const struct row rows[] = {
-    { "backend", "vulkan|gl|packemu|null", BACKEND, R | P | D, 0, 0, 0,
+    { "backend", "vulkan|gl|packemu|null", BACKEND, R | P | D | F, 0, 0, 0,
       "default: the first that has a device" },
-    { "device", "N|NAME", TEXT, R | P, AT(device), 0, 0,
+    { "device", "N|NAME", TEXT, R | P | F, AT(device), 0, 0,
       "index or part of a name, see 'halflight devices'" },
-    { "gl-context", "osmesa|egl", GL_CONTEXT, R | P, 0, 0, 0,
+    { "gl-context", "osmesa|egl", GL_CONTEXT, R | P | F, 0, 0, 0,
       "of --backend gl; default: osmesa, then egl" },
-    { "validation", NULL, FLAG, R | P, AT(validation), 0, 0,
+    { "validation", NULL, FLAG, R | P | F, AT(validation), 0, 0,
       "driver validation layers" },
-    { "profile", "native|dx10|xbox360|ps3", PROFILE, R | P, 0, 0, 0,
-      "console rules; this build has only native" },
+    { "profile", "native|dx10|xbox360|ps3", PROFILE, R | P | F, 0, 0, 0,
+      "console whose rules hold; default: the device's own" },
     { "pipeline", "auto|forward|forward-multipass|inferred|reference",
       PIPELINE, R | P, 0, 0, 0, "default: the cheapest" },
     { "size", "WxH", SIZE, R | P, AT(width), 1, HLC_SIZE_MAX,
@@ -76,6 +77,8 @@ static const struct row rows[] = {
       "may lists be bounded by depth; default on" },
     { "scissor", "on|off", SCISSOR, R | P, 0, 0, 0,
       "of forward-multipass; default on" },
+    { "half-pixel", "auto|none|state|vertex", HALF_PIXEL, R | P, 0, 0, 0,
+      "who puts integer pixel centres at halves; default: the state" },
     { "light-format", "FORMAT", LIGHT_FORMAT, R | P, 0, 0, 0,
       "of the light buffer, such as RGBA16_FLOAT" },
     { "ids-scheme", "unique|colored|paper", IDS_SCHEME, R | P, 0, 0, 0,
@@ -94,7 +97,7 @@ static const struct row rows[] = {
       "render: PNG; scene: prefix of the files" },
     { "hdr", "F.pfm", TEXT, R, AT(hdr), 0, 0, "linear picture" },
     { "exposure", "EV", REAL, R, AT(exposure), -64, 64, "of the PNG" },
-    { "json", "FILE", TEXT, R | P | D | C, AT(json), 0, 0,
+    { "json", "FILE", TEXT, R | P | D | C | F, AT(json), 0, 0,
       "'-' is stdout; see docs/json.md" },
     { "dump", "DIR", TEXT, R, AT(dump), 0, 0, "every target as an image" },
     { "ids", "F.png", TEXT, R | C, AT(ids), 0, 0,
@@ -106,6 +109,16 @@ static const struct row rows[] = {
       "frames before them; default 3" },
     { "supersample", "N", COUNT, R, AT(supersample), 1, 64,
       "N x N samples a pixel, pipeline reference only" },
+    { "list", NULL, FLAG, F, AT(list), 0, 0,
+      "the checks that must run, and the defects they must catch" },
+    { "only", "NAMES", TEXT, F, AT(only), 0, 0,
+      "checks whose names begin with it" },
+    { "mutant", "NAME", TEXT, F, AT(mutant), 0, 0,
+      "put a defect in, which checks must then fail for" },
+    { "seed", "N", COUNT, F, AT(seed), 1, 1e9,
+      "of random cases; default 1" },
+    { "quick", NULL, FLAG, F, AT(quick), 0, 0,
+      "the same checks with fewer random cases" },
     { "min-psnr", "DB", MIN_PSNR, C, 0, 0, 0, "smallest PSNR that passes" },
 };
 enum { N_ROWS = sizeof rows / sizeof rows[0] };
@@ -126,6 +139,8 @@ static const struct command commands[HLC_COMMAND_COUNT] = {
                     "list built-in scenes, or write one as files" },
     [HLC_COMPARE] = { "compare", "TEST REFERENCE", 2, 2,
                       "how far a PNG or PFM is from another" },
+    [HLC_CONFORM] = { "conform", "", 0, 0,
+                      "check formats, packing and blending on a device" },
 };
 
 /* ---- reading one value -------------------------------------------------- */
@@ -270,8 +285,8 @@ static int take_word(struct hlc_options *o, const struct row *r,
         return hlc_fail(HLC_BAD, "--%s %s: must be one of %s", r->name, value,
                         r->value);
     switch (r->kind) {
-    case PROFILE:
-        return i ? bad(r, value, "this build has only native") : 0;
+    case PROFILE: o->profile = value; return 0;
+    case HALF_PIXEL: o->half_pixel = (enum hl_half_pixel)i; return 0;
     case PIPELINE:
         o->reference = i == HL_PIPELINE_COUNT;
         o->pipeline = o->reference ? HL_PIPELINE_AUTO : (enum hl_pipeline)i;
@@ -424,6 +439,7 @@ int hlc_options_parse(struct hlc_options *out, int argc, char **argv)
 {
     memset(out, 0, sizeof *out);
     out->ids_seed = 4;
+    out->seed = 1;
     out->width = 1280;
     out->height = 720;
     out->samples = 1;
@@ -469,6 +485,6 @@ void hlc_options_help(enum hlc_command command)
     printf("\nSCENE is a built-in name ('halflight scene' lists them) or a "
            ".gltf, .glb or .obj\nfile. Options are --name value or "
            "--name=value; 'halflight help COMMAND' lists\nthem. Exit code: "
-           "0 done, 1 a comparison failed, 2 bad usage or input, 3 no such\n"
+           "0 done, 1 a comparison or check failed, 2 bad usage or input, 3 no\nsuch "
            "backend or device.\n");
 }

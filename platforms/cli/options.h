@@ -10,7 +10,7 @@
 
 enum hlc_command {
     HLC_HELP = 0, HLC_VERSION, HLC_RENDER, HLC_PLAN, HLC_DEVICES, HLC_SCENE,
-    HLC_COMPARE, HLC_COMMAND_COUNT
+    HLC_COMPARE, HLC_CONFORM, HLC_COMMAND_COUNT
 };
 
 /* How --ids-scheme names regions in the DSF buffer (core/ids.h). */
@@ -32,6 +32,8 @@ struct hlc_options {
                               * first that has a device                      */
     const char *device;      /* as hl_device_desc.device; NULL: best         */
     const char *gl_context;  /* "osmesa", "egl"; NULL: whichever there is    */
+    const char *profile;     /* console whose rules hold; NULL: the device's */
+    uint32_t threads;        /* of packemu; 0 = one a processor              */
     bool validation;
 
     /* picture */
@@ -70,6 +72,13 @@ struct hlc_options {
     enum hlc_ids_scheme ids_scheme;
     uint32_t ids_seed;       /* of HLC_IDS_PAPER's random numbers            */
     enum hl_format light_format;     /* NONE = planner's                     */
+    enum hl_half_pixel half_pixel;   /* AUTO                                 */
+
+    /* conform */
+    const char *mutant;      /* a defect that must be caught; NULL: none     */
+    const char *only;        /* checks whose names begin with it; NULL: all  */
+    uint32_t seed;           /* of random cases; 1                           */
+    bool list, quick;
 
     /* --max-error: of a plan in 8-bit sRGB codes, of compare the largest
      * linear difference that passes. */

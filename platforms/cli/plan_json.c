@@ -8,6 +8,30 @@ static void text(cJSON *object, const char *key, const char *value)
     cJSON_AddStringToObject(object, key, value);
 }
 
+/* null where the device keeps memory as it likes. */
+static void add_console(cJSON *j, const struct hl_plan_target *t)
+{
+    const struct hl_console *c = &t->console;
+    char word[8];
+    hlc_json_uint(j, "edram_tiles", t->edram_tiles);
+    if (!c->edram_tile && !c->color_exp_bias && !c->resolve_exp_bias &&
+        !c->resolve_number && !c->endian && !c->remap) {
+        cJSON_AddNullToObject(j, "console");
+        return;
+    }
+    cJSON *o = cJSON_AddObjectToObject(j, "console");
+    if (c->edram_tile)
+        hlc_json_uint(o, "edram_first", c->edram_tile - 1u);
+    else
+        cJSON_AddNullToObject(o, "edram_first");
+    cJSON_AddNumberToObject(o, "color_exp_bias", c->color_exp_bias);
+    cJSON_AddNumberToObject(o, "resolve_exp_bias", c->resolve_exp_bias);
+    text(o, "resolve_number", hlc_number_name(c->resolve_number));
+    text(o, "endian", hlc_endian_name(c->endian));
+    snprintf(word, sizeof word, "0x%04X", c->remap ? c->remap : 0xAAE4u);
+    text(o, "remap", word);
+}
+
 static cJSON *target_json(const struct hl_plan_target *t)
 {
     cJSON *j = cJSON_CreateObject();
@@ -26,6 +50,7 @@ static cJSON *target_json(const struct hl_plan_target *t)
         if (t->read_by >> r & 1u)
             cJSON_AddItemToArray(readers, cJSON_CreateString(
                                  hlc_pass_name((enum hl_pass_role)r)));
+    add_console(j, t);
     if (!unit[0]) {
         cJSON_AddNullToObject(j, "error");
         cJSON_AddNullToObject(j, "error_unit");
@@ -50,6 +75,7 @@ static cJSON *pass_json(const struct hl_plan_pass *p)
         cJSON_AddNullToObject(j, "depth");
     else
         text(j, "depth", hlc_role_name(p->depth));
+    cJSON_AddBoolToObject(j, "depth_read_only", p->depth_read_only);
     text(j, "depth_test", hlc_compare_name(p->depth_test));
     cJSON_AddBoolToObject(j, "depth_write", p->depth_write);
     text(j, "blend", hlc_blend_name(p->blend));
@@ -88,6 +114,7 @@ static void add_light(cJSON *j, const struct hl_plan *p)
     hlc_json_uint(light, "tile", p->tile);
     cJSON_AddBoolToObject(light, "tile_depth", p->tile_depth);
     hlc_json_real(light, "scale", (double)p->light_scale, 9);
+    hlc_json_real(light, "out", (double)p->light_out, 9);
     cJSON *dsf = cJSON_AddObjectToObject(j, "dsf");
     text(dsf, "mode", hlc_dsf_name(p->dsf));
     hlc_json_real(dsf, "k", (double)p->dsf_k, 6);
@@ -108,6 +135,13 @@ static void add_settings(cJSON *j, const struct hl_plan *p)
     cJSON_AddBoolToObject(j, "scissor", p->scissor);
     cJSON_AddBoolToObject(j, "reversed_depth", p->reversed_depth);
     hlc_json_real(j, "far", (double)p->far, 9);
+    text(j, "two16", hlc_two16_name(p->two16));
+    hlc_json_real(j, "id_steps", (double)p->id_steps, 9);
+    cJSON_AddBoolToObject(j, "float_taps", p->float_taps);
+    text(j, "depth_read", hlc_depth_read_name(p->depth_read));
+    text(j, "half_pixel", hlc_half_pixel_name(p->half_pixel));
+    text(j, "decals", hlc_decals_name(p->decals));
+    hlc_json_uint(j, "edram_tiles", p->edram_tiles);
     hlc_json_real(j, "bytes_per_pixel", (double)p->bytes_per_pixel, 6);
     hlc_json_real(j, "moved_per_pixel", (double)p->moved_per_pixel, 6);
     hlc_json_real(j, "light_error", (double)p->light_error, 6);
@@ -120,6 +154,7 @@ cJSON *hlc_plan_json(const struct hl_plan *p)
     if (!j)
         return NULL;
     text(j, "pipeline", hlc_pipeline_name(p->pipeline));
+    text(j, "profile", p->profile);
     hlc_json_size(j, "size", p->width, p->height);
     hlc_json_uint(j, "samples", p->samples);
     add_light(j, p);

@@ -6,7 +6,8 @@
 
 /* In `text` a mark and a digit stand for an argument: #0 a whole number, $0
  * a number, =0 a number or "-" where it is 0, %0 a share in percent, @0 a
- * format, &0 a pipeline, ~0 a light path. */
+ * format, &0 a pipeline, ~0 a light path, ^0 a target, *0 a pass, !0 a word
+ * in hexadecimal. */
 struct row { const char *name, *section, *text; };
 
 static const struct row rows[HL_WHY_COUNT] = {
@@ -75,6 +76,116 @@ static const struct row rows[HL_WHY_COUNT] = {
         "each light draws its objects whole, as asked" },
     [HL_WHY_NO_LIGHTS] = { "no_lights", "K 7.1",
         "there are no lights, only ambient and emission" },
+    [HL_WHY_STAND_IN] = { "stand_in", "",
+        "@0 stands in for the console's @1 (^2)" },
+    [HL_WHY_TWO16_FIXED32] = { "two16_fixed32", "K 5.1",
+        "0..1 is written as 64 v - 32 to @0 and resolved by 2 to the $3 as "
+        "signed numbers, read as s / 2 + 1 / 2: #1 codes, where 0..1 as it "
+        "is would have #2" },
+    [HL_WHY_TWO16_SIGNED] = { "two16_signed", "K 5.1",
+        "0..1 is written as 2 v - 1 to @0 and read as s / 2 + 1 / 2: the "
+        "65535 codes of the console's texture" },
+    [HL_WHY_TWO16_BYTES_ARGB] = { "two16_bytes_argb", "K 5.2",
+        "no target has two 16-bit channels: two numbers are written as the "
+        "four bytes of @0 and read as @1 by remap !2" },
+    [HL_WHY_TWO16_BYTES] = { "two16_bytes", "K 5.2",
+        "no target has two 16-bit channels: two numbers are written as the "
+        "four bytes of @0, low first, and read as @1" },
+    [HL_WHY_ID_STEPS] = { "id_steps", "K 5.1",
+        "ids are stored as id / #0: signed codes have a step less, and with "
+        "65535 two ids would share the middle one" },
+    [HL_WHY_MRT_FORMAT] = { "mrt_format", "K 5.2",
+        "all colour targets of the geometry pass are @0: this machine has one "
+        "format for all of them" },
+    [HL_WHY_FLOAT_TAPS] = { "float_taps", "K 3",
+        "the filter's taps are sampled as numbers: this machine cannot read "
+        "texels as words" },
+    [HL_WHY_LIGHT_FORMAT_PROFILE] = { "light_format_profile", "K 2.2, 5",
+        "the light buffer is in @0, the profile's choice: after #1 blends at "
+        "most %2 off, 1 stands for $3" },
+    [HL_WHY_NO_BLEND] = { "no_blend", "K 2.2",
+        "lights are added by blending, which @0 cannot here and @1 can" },
+    [HL_WHY_LIGHT_RANGE] = { "light_range", "K 2.2",
+        "light up to $0 fits the fixed range: it is written times $1, and a "
+        "step of it is $2" },
+    [HL_WHY_LIGHT_PEAK_CUT] = { "light_peak_cut", "",
+        "inverse square lights reach $0 a centimetre away, steps would be "
+        "$1: the range ends at $2 instead, reached $3 m away; what is "
+        "brighter is stored as that" },
+    [HL_WHY_LIGHT_PEAK_DEFAULT] = { "light_peak_default", "",
+        "how bright the light gets is not known: $0 is taken for the fixed "
+        "range, brighter light is stored as that" },
+    [HL_WHY_COLOR_STEP] = { "color_step", "",
+        "below $0 the frame's step is $1, up to $2 codes of 255 in the dark" },
+    [HL_WHY_DEPTH_BARG] = { "depth_barg", "K 5.2",
+        "depth in @0 is read as @1 by remap !2 (BARG), its three bytes put "
+        "together exactly as the precise fetch does" },
+    [HL_WHY_DEPTH_PLAIN] = { "depth_plain", "K 5.2",
+        "depth in @0 is sampled as depth: the console's remap is not needed "
+        "here" },
+    [HL_WHY_DEPTH_IN_PLACE] = { "depth_in_place", "K 5",
+        "nothing tests depth while it is read, so @0 is read in place by a "
+        "view of its depth, without a copy" },
+    [HL_WHY_DEPTH_READ_ONLY] = { "depth_read_only", "K 2.2",
+        "the light pass tests @0 read only while it reads it" },
+    [HL_WHY_DEPTH_COPY] = { "depth_copy", "K 5",
+        "the light pass tests depth while it reads it, which this machine "
+        "does with a copy only: a pass writes one in @0" },
+    [HL_WHY_HALF_PIXEL_STATE] = { "half_pixel_state", "K 5.1",
+        "pixel centres are at integers: the half pixel offset state puts "
+        "them at halves" },
+    [HL_WHY_HALF_PIXEL_VERTEX] = { "half_pixel_vertex", "K 5.1",
+        "pixel centres are at integers: vertex stages shift by half a pixel "
+        "of the target that they draw to, and the state stays off" },
+    [HL_WHY_HALF_PIXEL_NONE] = { "half_pixel_none", "K 5.1",
+        "pixel centres are at integers and stay there, as asked: pictures "
+        "are half a pixel off" },
+    [HL_WHY_HALF_PIXEL_HERE] = { "half_pixel_here", "K 5.1",
+        "pixel centres are at halves on this machine: nothing shifts for the "
+        "console's" },
+    [HL_WHY_DECALS_BLEND] = { "decals_blend", "K 5.2",
+        "decals are blended into the normals in @0" },
+    [HL_WHY_DECALS_PACKED] = { "decals_packed", "K 5.2",
+        "normals are packed in all channels of @0 and cannot be blended: "
+        "decals are translucent objects" },
+    [HL_WHY_DECALS_NO_BLEND] = { "decals_no_blend", "K 5.2",
+        "@0 of the normals cannot be blended here: decals are translucent "
+        "objects" },
+    [HL_WHY_DECALS_FORWARD] = { "decals_forward", "K 5.2",
+        "there is no target of normals: decals are translucent objects" },
+    [HL_WHY_RESOLVE] = { "resolve", "K 5.1",
+        "^0 is resolved from EDRAM after the *1 pass, before the *2 pass "
+        "reads it: #3 bytes" },
+    [HL_WHY_EDRAM_RESIDENT] = { "edram_resident", "K 5.1",
+        "what the geometry and light passes draw to stays in EDRAM together, "
+        "nothing shared: #0 of #1 tiles, light #2, light_depth #3" },
+    [HL_WHY_EDRAM_SHARED] = { "edram_shared", "K 5.1",
+        "with nothing shared EDRAM would hold #0 of #1 tiles: light shares "
+        "with G-buffers that are resolved by then, never with light_depth; "
+        "#2 at most are in use" },
+    [HL_WHY_EDRAM_FRAME] = { "edram_frame", "K 5.1",
+        "the frame's colour and depth take #0 of #1 tiles, in passes of their "
+        "own" },
+    [HL_WHY_LIGHT_SIZE_EDRAM] = { "light_size_edram", "K 5.1",
+        "the light buffer has #0 x #1 texels: the largest of the frame's "
+        "aspect that EDRAM holds, where five eighths a side would be #2 x "
+        "#3" },
+    [HL_WHY_EDRAM_SET] = { "edram_set", "K 5.1",
+        "normals, DSF and depth take #0 tiles, #1 with the light buffer, and "
+        "further channels #2 more" },
+    [HL_WHY_EDRAM_SURFACE] = { "edram_surface", "K 5.1",
+        "^0 #2 x #3 takes #1 tiles" },
+    [HL_WHY_EDRAM_SUM] = { "edram_sum", "K 5.1",
+        "the *0 pass needs #1 tiles of EDRAM at once, which has #2" },
+    [HL_WHY_EDRAM_FITS] = { "edram_fits", "K 5.1",
+        "a light buffer of #0 x #1 fits (#2 tiles, light shares)" },
+    [HL_WHY_EDRAM_FITS_RESIDENT] = { "edram_fits_resident", "K 5.1",
+        "#0 x #1 fits with nothing shared (#2 tiles)" },
+    [HL_WHY_EDRAM_TILING] = { "edram_tiling", "K 5.1",
+        "predicated tiling would draw the pass #0 times, for rectangles of "
+        "#1 x #2 (#3 tiles each)" },
+    [HL_WHY_NOT_BLENDABLE] = { "not_blendable", "K 2.2",
+        "@0 cannot be blended here" },
 };
 
 static const struct row *row_of(enum hl_reason why)
@@ -106,6 +217,14 @@ static void argument(char *out, size_t bytes, char mark, float value)
         snprintf(out, bytes, "%s",
                  hl_format_info((enum hl_format)(int)value)->name);
         break;
+    case '^':
+        snprintf(out, bytes, "%s", hlc_role_name((enum hl_role)(int)value));
+        break;
+    case '*':
+        snprintf(out, bytes, "%s",
+                 hlc_pass_name((enum hl_pass_role)(int)value));
+        break;
+    case '!': snprintf(out, bytes, "0x%04X", (unsigned)(int)value); break;
     case '&':
         snprintf(out, bytes, "%s",
                  hlc_pipeline_name((enum hl_pipeline)(int)value));
@@ -119,7 +238,7 @@ static void argument(char *out, size_t bytes, char mark, float value)
 
 static bool is_mark(const char *t)
 {
-    return strchr("#$=%@&~", t[0]) && t[1] >= '0' && t[1] <= '3';
+    return strchr("#$=%@&~^*!", t[0]) && t[1] >= '0' && t[1] <= '3';
 }
 
 void hlc_reason_text(const struct hl_plan *plan, uint32_t i, char *out,
@@ -160,6 +279,30 @@ const char *hlc_refusal_text(enum hl_refusal why)
         "light lists need storage buffers, which the device has not",
         "a number is out of its range",
         "no pipeline can be drawn on the device",
+        "its targets do not fit the console's EDRAM",
+        ("pixel centres are at halves here: neither state nor vertices shift "
+         "them"),
     };
     return text[(unsigned)why < HL_REFUSED_COUNT ? why : 0];
+}
+
+static bool of_refusal(enum hl_reason why)
+{
+    return why >= HL_WHY_EDRAM_SET && why < HL_WHY_COUNT;
+}
+
+void hlc_refusal_line(const struct hl_plan *refused, enum hl_refusal why,
+                      char *out, size_t bytes)
+{
+    size_t used = (size_t)snprintf(out, bytes, "%s", hlc_refusal_text(why));
+    const char *between = ": ";
+    for (uint32_t i = 0; i < refused->n_reasons; i++) {
+        char text[256];
+        if (!of_refusal(refused->reason[i].why) || used >= bytes)
+            continue;
+        hlc_reason_text(refused, i, text, sizeof text);
+        used += (size_t)snprintf(out + used, bytes - used, "%s%s", between,
+                                 text);
+        between = "; ";
+    }
 }

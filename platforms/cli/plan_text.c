@@ -20,14 +20,15 @@ const char *hlc_role_name(enum hl_role r)
 {
     static const char *const names[HL_ROLE_COUNT] = {
         "none", "normal", "dsf", "exponent", "light_depth", "light", "color",
-        "depth", "resolved" };
+        "depth", "resolved", "depth_copy" };
     return PICK(names, r);
 }
 
 const char *hlc_pass_name(enum hl_pass_role r)
 {
     static const char *const names[HL_PASS_ROLE_COUNT] = {
-        "none", "geometry", "light", "material", "forward", "blended" };
+        "none", "geometry", "light", "material", "forward", "blended",
+        "depth_copy" };
     return PICK(names, r);
 }
 
@@ -59,7 +60,7 @@ const char *hlc_falloff_name(uint32_t falloff)
 const char *hlc_blend_name(enum hl_blend b)
 {
     static const char *const names[] = { "off", "add", "over", "add_alpha",
-                                         "max" };
+                                         "max", "shift" };
     return PICK(names, b);
 }
 
@@ -82,8 +83,51 @@ const char *hlc_error_unit(enum hl_role r)
 {
     static const char *const units[HL_ROLE_COUNT] = {
         "", "degrees", "metres", "relative", "", "relative", "relative", "",
-        "" };
+        "", "" };
     return PICK(units, r);
+}
+
+const char *hlc_two16_name(uint32_t two16)
+{
+    static const char *const names[] = { "unorm", "signed", "fixed32",
+                                         "bytes", "bytes_argb" };
+    return PICK(names, two16);
+}
+
+const char *hlc_depth_read_name(uint32_t depth_read)
+{
+    static const char *const names[] = { "float", "barg" };
+    return PICK(names, depth_read);
+}
+
+const char *hlc_half_pixel_name(enum hl_half_pixel h)
+{
+    static const char *const names[] = { "auto", "none", "state", "vertex" };
+    return PICK(names, h);
+}
+
+const char *hlc_decals_name(enum hl_decals d)
+{
+    static const char *const names[] = { "none", "blend_normals",
+                                         "alpha_objects" };
+    return PICK(names, d);
+}
+
+const char *hlc_number_name(uint32_t number)
+{
+    static const char *const names[] = { "unsigned", "signed" };
+    return PICK(names, number);
+}
+
+const char *hlc_endian_name(uint32_t endian)
+{
+    static const char *const names[] = { "none", "8in16", "8in32", "16in32" };
+    return PICK(names, endian);
+}
+
+bool hlc_is_native(const struct hl_plan *p)
+{
+    return !p->profile[0] || !strcmp(p->profile, "native");
 }
 
 /* ---- the page ----------------------------------------------------------- */
@@ -95,8 +139,10 @@ static void print_head(FILE *out, const struct hl_plan *p)
     if (p->light_width)
         fprintf(out, ", light %ux%u", (unsigned)p->light_width,
                 (unsigned)p->light_height);
-    fprintf(out, ", %u sample%s a pixel\n", (unsigned)p->samples,
-            p->samples == 1 ? "" : "s");
+    fprintf(out, ", %u sample%s a pixel%s%s\n", (unsigned)p->samples,
+            p->samples == 1 ? "" : "s",
+            hlc_is_native(p) ? "" : ", profile ",
+            hlc_is_native(p) ? "" : p->profile);
     fprintf(out, "predicted: %.3g ms, %.4g bytes a pixel held, %.4g moved, "
             "light %.2g %% off\n", (double)p->cost_ms,
             (double)p->bytes_per_pixel, (double)p->moved_per_pixel,
@@ -109,6 +155,25 @@ static void print_readers(FILE *out, uint32_t read_by)
         if (read_by >> r & 1u)
             fprintf(out, ", read by %s",
                     hlc_pass_name((enum hl_pass_role)r));
+}
+
+static void print_console(FILE *out, const struct hl_plan_target *t)
+{
+    const struct hl_console *c = &t->console;
+    if (c->edram_tile)
+        fprintf(out, ", EDRAM %u-%u", c->edram_tile - 1u,
+                (unsigned)(c->edram_tile - 1u + t->edram_tiles - 1u));
+    else if (t->edram_tiles)
+        fprintf(out, ", EDRAM %u tiles", (unsigned)t->edram_tiles);
+    if (c->color_exp_bias)
+        fprintf(out, ", written x 2^%d", c->color_exp_bias);
+    if (c->resolve_exp_bias || c->resolve_number)
+        fprintf(out, ", resolved x 2^%d %s", c->resolve_exp_bias,
+                hlc_number_name(c->resolve_number));
+    if (c->endian)
+        fprintf(out, ", endian %s", hlc_endian_name(c->endian));
+    if (c->remap)
+        fprintf(out, ", remap 0x%04X", c->remap);
 }
 
 static void print_target(FILE *out, const struct hl_plan_target *t)
@@ -125,6 +190,7 @@ static void print_target(FILE *out, const struct hl_plan_target *t)
         fprintf(out, " as %s", hl_format_info(t->sample_as)->name);
     if (unit[0] && t->error > 0)
         fprintf(out, ", error %.3g %s", (double)t->error, unit);
+    print_console(out, t);
     fprintf(out, "\n");
 }
 
@@ -138,12 +204,31 @@ static void print_pass(FILE *out, const struct hl_plan_pass *p)
     if (p->depth != HL_ROLE_NONE)
         fprintf(out, ", depth %s %s%s", hlc_role_name(p->depth),
                 hlc_compare_name(p->depth_test),
-                p->depth_write ? " write" : "");
+                p->depth_write ? " write"
+                : p->depth_read_only ? " read only" : "");
     if (p->blend != HL_BLEND_OFF)
         fprintf(out, ", blend %s", hlc_blend_name(p->blend));
     if (p->lights_a_draw)
         fprintf(out, ", %u lights a draw", (unsigned)p->lights_a_draw);
     fprintf(out, "\n");
+}
+
+/* Of a profile, and what it has in common with none. */
+static void print_rules(FILE *out, const struct hl_plan *p)
+{
+    if (p->half_pixel != HL_HALF_PIXEL_AUTO)
+        fprintf(out, "  half pixel %s\n", hlc_half_pixel_name(p->half_pixel));
+    if (p->decals != HL_DECALS_NONE)
+        fprintf(out, "  decals %s\n", hlc_decals_name(p->decals));
+    if (p->edram_tiles)
+        fprintf(out, "  EDRAM %u tiles at most\n", (unsigned)p->edram_tiles);
+    if (hlc_is_native(p) || p->pipeline != HL_PIPELINE_INFERRED)
+        return;
+    fprintf(out, "  pairs %s, ids of %g steps, depth read %s, taps %s, light "
+            "written x %.4g\n", hlc_two16_name(p->two16),
+            (double)p->id_steps, hlc_depth_read_name(p->depth_read),
+            p->float_taps ? "as numbers" : "as words",
+            (double)p->light_out);
 }
 
 static void print_settings(FILE *out, const struct hl_plan *p)
@@ -195,5 +280,6 @@ void hl_plan_text(FILE *out, const struct hl_plan *plan)
     for (uint32_t i = 0; i < plan->n_passes; i++)
         print_pass(out, &plan->pass[i]);
     print_settings(out, plan);
+    print_rules(out, plan);
     print_reasons(out, plan);
 }

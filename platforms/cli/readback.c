@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include "shaders/shared/pack.h"
 
 enum hl_result hlc_texels_read(struct hlc_texels *out, struct hl_device *d,
                                hl_tex tex)
@@ -23,6 +24,7 @@ enum hl_result hlc_texels_read(struct hlc_texels *out, struct hl_device *d,
         return r;
     }
     out->format = desc.format;
+    out->number = desc.console.resolve_number;
     out->width = desc.width;
     out->height = desc.height;
     return HL_OK;
@@ -63,6 +65,18 @@ static void unpack_10_10_10_2(float out[4], const uint8_t *p)
     out[3] = (float)(v >> 30) / 3.0f;
 }
 
+/* 7e3: 3 bits of exponent, 7 of mantissa (spec/consoles 1.2). */
+static void unpack_7e3(float out[4], const uint8_t *p)
+{
+    uint32_t v;
+    memcpy(&v, p, sizeof v);
+    for (int k = 0; k < 3; k++) {
+        int e = v >> (10 * k + 7) & 7, m = v >> 10 * k & 127;
+        out[k] = (float)(e ? ldexp(128 + m, e - 10) : ldexp(m, -9));
+    }
+    out[3] = (float)(v >> 30) / 3.0f;
+}
+
 static float channel8(enum hl_format_kind kind, uint8_t c)
 {
     double s = c / 255.0;
@@ -81,6 +95,14 @@ static float channel16(enum hl_format_kind kind, const uint8_t *p)
         return (float)u / 65535.0f;
     int s = u < 32768 ? u : u - 65536;
     return s < -32767 ? -1.0f : (float)s / 32767.0f;
+}
+
+/* Fixed point is in memory what its resolve made of it. */
+static enum hl_format_kind kind16(const struct hlc_texels *t)
+{
+    enum hl_format_kind kind = hl_format_info(t->format)->kind;
+    return kind != HL_KIND_FIXED32 ? kind
+           : t->number == HL_NUMBER_SIGNED ? HL_KIND_SNORM : HL_KIND_UNORM;
 }
 
 static float channel32(enum hl_format_kind kind, const uint8_t *p)
@@ -105,10 +127,29 @@ void hlc_texel(float out[4], const struct hlc_texels *t, size_t i)
         unpack_11_11_10(out, p);
     else if (t->format == HL_FORMAT_RGB10A2_UNORM)
         unpack_10_10_10_2(out, p);
+    else if (t->format == HL_FORMAT_RGB10A2_FLOAT)
+        unpack_7e3(out, p);
     else
         for (int k = 0; k < f->channels; k++)
             out[k] = f->bits[k] == 8 ? channel8(k < 3 ? f->kind
                                                       : HL_KIND_UNORM, p[k])
-                     : f->bits[k] == 16 ? channel16(f->kind, p + 2 * k)
+                     : f->bits[k] == 16 ? channel16(kind16(t), p + 2 * k)
                                         : channel32(f->kind, p + 4 * k);
+}
+
+static float join(float lo, float hi)
+{
+    hl_vec2 b = hl_v2(floorf(hi * 255.0f + 0.5f), floorf(lo * 255.0f + 0.5f));
+    return hl_join16(b) / 65535.0f;
+}
+
+void hlc_two16(float out[2], uint32_t two16, const float t[4])
+{
+    hl_vec2 v = hl_two16_decode(two16, hl_v2(t[0], t[1]));
+    if (two16 == HL_TWO16_BYTES)
+        v = hl_v2(join(t[0], t[1]), join(t[2], t[3]));
+    if (two16 == HL_TWO16_BYTES_ARGB)
+        v = hl_v2(join(t[2], t[1]), join(t[0], t[3]));
+    out[0] = v.x;
+    out[1] = v.y;
 }

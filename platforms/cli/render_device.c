@@ -238,6 +238,11 @@ static void name_objects(struct hlc_render *r)
     }
 }
 
+bool hlc_render_inspects(const struct hlc_options *o)
+{
+    return o->json || o->dump;
+}
+
 static bool filters(const struct hl_plan *p)
 {
     return p->pipeline == HL_PIPELINE_INFERRED &&

@@ -22,7 +22,7 @@ static void put_machine(cJSON *tree, const struct hlc_render *r)
     text(tree, "backend", reference ? "reference" : r->caps.backend);
     text(tree, "device", reference ? "host" : r->caps.device);
     text(tree, "driver", reference ? "" : r->caps.driver);
-    text(tree, "profile", "native");
+    text(tree, "profile", reference ? "native" : r->plan.profile);
     text(tree, "pipeline", reference ? "reference"
                                      : hlc_pipeline_name(r->plan.pipeline));
     if (!reference) {

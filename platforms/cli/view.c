@@ -149,6 +149,7 @@ void hlc_needs(struct hl_needs *out, const struct hlc_world *world,
     out->dsf_c = (float)o->dsf_c;
     out->dsf_tau = (float)o->dsf_tau;
     out->light_format = o->light_format;
+    out->half_pixel = o->half_pixel;
     hl_needs_measure(out, frame, world->surfaces,
                      (float)o->width / (float)o->height);
     out->n_regions = fits32(world->ids.regions);

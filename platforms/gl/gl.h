@@ -85,6 +85,8 @@ struct hlgl_prog {
     uint32_t streams;        /* mask of streams that the layout reads        */
     uint8_t topology, blend, depth_test, cull;  /* enums of hal.h            */
     bool depth_write, mirrored, no_color_write;
+    float blend_constant;
+    struct hl_stencil stencil;
 };
 
 enum { HLGL_FBO_KEYS = HL_MAX_COLORS + 1 };   /* depth is the last           */

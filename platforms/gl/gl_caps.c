@@ -137,6 +137,9 @@ static struct hl_format_caps format_caps(const struct hlgl *g,
     enum hl_format_kind kind = hl_format_info(format)->kind;
     int use = uses_of_kind(kind);
     bool texture, target;
+    /* Formats of consoles: not to be asked about. */
+    if (formats[format].internal == GL_NONE)
+        return c;
     try_format(g, format, 1, &texture, &target);
     if (!texture)
         return c;

@@ -46,12 +46,13 @@ static void clear_color(const struct hlgl *g, const struct targets *t,
 }
 
 static void clear_depth(const struct hlgl *g, const struct targets *t,
-                        float depth)
+                        const float clear[4])
 {
     if (hl_format_info(t->depth->format)->bits[1])
-        g->gl.ClearNamedFramebufferfi(t->fbo, GL_DEPTH_STENCIL, 0, depth, 0);
+        g->gl.ClearNamedFramebufferfi(t->fbo, GL_DEPTH_STENCIL, 0, clear[0],
+                                      (GLint)clear[1]);
     else
-        g->gl.ClearNamedFramebufferfv(t->fbo, GL_DEPTH, 0, &depth);
+        g->gl.ClearNamedFramebufferfv(t->fbo, GL_DEPTH, 0, clear);
 }
 
 static void invalidate(const struct hlgl *g, const struct targets *t,
@@ -77,12 +78,13 @@ static void load(const struct hlgl *g, const struct targets *t,
     g->gl.Disable(GL_SCISSOR_TEST);
     g->gl.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     g->gl.DepthMask(GL_TRUE);
+    g->gl.StencilMask(255);
     invalidate(g, t, p, true);
     for (uint32_t i = 0; i < p->n_colors; i++)
         if (p->color[i].load == HL_LOAD_CLEAR)
             clear_color(g, t, (GLint)i, p->color[i].clear);
     if (t->depth && p->depth.load == HL_LOAD_CLEAR)
-        clear_depth(g, t, p->depth.clear[0]);
+        clear_depth(g, t, p->depth.clear);
 }
 
 static void resolve(const struct hlgl *g, const struct targets *t,
@@ -128,7 +130,9 @@ static const struct { GLenum color[2], alpha[2], op; } blends[] = {
                         { GL_ONE, GL_ONE_MINUS_SRC_ALPHA }, GL_FUNC_ADD },
     [HL_BLEND_ADD_ALPHA] = { { GL_SRC_ALPHA, GL_ONE }, { GL_ZERO, GL_ONE },
                              GL_FUNC_ADD },
-    [HL_BLEND_MAX] = { { GL_ONE, GL_ONE }, { GL_ONE, GL_ONE }, GL_MAX }
+    [HL_BLEND_MAX] = { { GL_ONE, GL_ONE }, { GL_ONE, GL_ONE }, GL_MAX },
+    [HL_BLEND_SHIFT] = { { GL_ONE, GL_CONSTANT_COLOR },
+                         { GL_ONE, GL_CONSTANT_ALPHA }, GL_FUNC_ADD }
 };
 
 static void set_blend(const struct hlgl *g, const struct hlgl_prog *p)
@@ -143,19 +147,50 @@ static void set_blend(const struct hlgl *g, const struct hlgl_prog *p)
                             blends[p->blend].alpha[0],
                             blends[p->blend].alpha[1]);
     g->gl.BlendEquation(blends[p->blend].op);
+    g->gl.BlendColor(p->blend_constant, p->blend_constant, p->blend_constant,
+                     p->blend_constant);
+}
+
+static const GLenum compares[] = {
+    [HL_COMPARE_OFF] = GL_ALWAYS, [HL_COMPARE_NEVER] = GL_NEVER,
+    [HL_COMPARE_LESS] = GL_LESS, [HL_COMPARE_LESS_EQUAL] = GL_LEQUAL,
+    [HL_COMPARE_EQUAL] = GL_EQUAL, [HL_COMPARE_GREATER_EQUAL] = GL_GEQUAL,
+    [HL_COMPARE_GREATER] = GL_GREATER, [HL_COMPARE_ALWAYS] = GL_ALWAYS
+};
+
+static void set_stencil_face(const struct hlgl *g, const struct hl_stencil *s,
+                             const struct hl_stencil_face *face, GLenum which)
+{
+    static const GLenum ops[] = {
+        [HL_STENCIL_KEEP] = GL_KEEP, [HL_STENCIL_ZERO] = GL_ZERO,
+        [HL_STENCIL_REPLACE] = GL_REPLACE, [HL_STENCIL_INCREMENT] = GL_INCR,
+        [HL_STENCIL_DECREMENT] = GL_DECR,
+        [HL_STENCIL_INCREMENT_WRAP] = GL_INCR_WRAP,
+        [HL_STENCIL_DECREMENT_WRAP] = GL_DECR_WRAP,
+        [HL_STENCIL_INVERT] = GL_INVERT
+    };
+    g->gl.StencilFuncSeparate(which, compares[face->test], s->reference,
+                              s->read_mask);
+    g->gl.StencilOpSeparate(which, ops[face->fail], ops[face->depth_fail],
+                            ops[face->pass]);
+}
+
+/* set_raster says which winding is GL's front face, of stencil too. */
+static void set_stencil(const struct hlgl *g, const struct hl_stencil *s)
+{
+    bool on = s->front.test != HL_COMPARE_OFF;
+    switch_on(g, GL_STENCIL_TEST, on);
+    if (!on)
+        return;
+    set_stencil_face(g, s, &s->front, GL_FRONT);
+    set_stencil_face(g, s, &s->back, GL_BACK);
+    g->gl.StencilMask(s->write_mask);
 }
 
 static void set_raster(const struct hlgl *g, const struct hlgl_prog *p)
 {
-    static const GLenum compare[] = {
-        [HL_COMPARE_OFF] = GL_ALWAYS, [HL_COMPARE_NEVER] = GL_NEVER,
-        [HL_COMPARE_LESS] = GL_LESS, [HL_COMPARE_LESS_EQUAL] = GL_LEQUAL,
-        [HL_COMPARE_EQUAL] = GL_EQUAL,
-        [HL_COMPARE_GREATER_EQUAL] = GL_GEQUAL,
-        [HL_COMPARE_GREATER] = GL_GREATER, [HL_COMPARE_ALWAYS] = GL_ALWAYS
-    };
     switch_on(g, GL_DEPTH_TEST, p->depth_test != HL_COMPARE_OFF);
-    g->gl.DepthFunc(compare[p->depth_test]);
+    g->gl.DepthFunc(compares[p->depth_test]);
     g->gl.DepthMask(p->depth_write);
     switch_on(g, GL_CULL_FACE, p->cull != HL_CULL_NONE);
     g->gl.CullFace(p->cull == HL_CULL_FRONT ? GL_FRONT : GL_BACK);
@@ -171,6 +206,7 @@ static void bind_prog(struct hlgl *g, struct bound *b,
     g->gl.UseProgram(p->program);
     set_blend(g, p);
     set_raster(g, p);
+    set_stencil(g, &p->stencil);
     if (&g->layouts[p->layout] != b->layout) {
         b->layout = &g->layouts[p->layout];
         g->gl.BindVertexArray(b->layout->vao);
@@ -304,8 +340,9 @@ static enum hl_result reserve_query(struct hlgl *g, struct hlgl_frame *f)
     if (!g->timestamps)
         return HL_OK;
     if (!hl_bk_grow(g->device, &f->queries, &f->max_queries, need,
-                   sizeof *f->queries) ||
-        !hl_bk_grow(g->device, &f->labels, &f->max_labels, need, sizeof *f->labels))
+                    sizeof *f->queries) ||
+        !hl_bk_grow(g->device, &f->labels, &f->max_labels, need,
+                    sizeof *f->labels))
         return HL_ERR_MEMORY;
     if (need > f->n_queries) {
         g->gl.CreateQueries(GL_TIMESTAMP, 1, &f->queries[f->n_queries]);

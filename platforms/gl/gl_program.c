@@ -261,6 +261,8 @@ enum hl_result hlgl_prog_create(void *state, uint32_t slot,
     p.depth_write = desc->depth_write;
     p.mirrored = desc->mirrored;
     p.no_color_write = desc->no_color_write;
+    p.blend_constant = desc->blend_constant;
+    p.stencil = desc->stencil;
     hlgl_label(g, GL_PROGRAM, p.program, desc->label);
     g->progs[slot] = p;
     return HL_OK;

@@ -168,12 +168,6 @@ bool hlh_picture_read(struct hlh_picture *out, const char *path,
     return ok;
 }
 
-void hlh_picture_free(struct hlh_picture *p)
-{
-    free(p->rgb);
-    memset(p, 0, sizeof *p);
-}
-
 static bool take_ids(uint32_t *ids, const struct hlh_png_job *job)
 {
     size_t n = (size_t)job->width * job->height;

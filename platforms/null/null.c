@@ -44,6 +44,8 @@ static void default_caps(struct hl_caps *c)
     for (int i = 1; i < HL_FORMAT_COUNT; i++) {
         enum hl_format_kind kind = hl_format_info((enum hl_format)i)->kind;
         int use = HL_USE_SAMPLED | HL_USE_TARGET;
+        if (i >= HL_FORMAT_RG16_FIXED32)
+            continue;        /* consoles' own                                */
         if (kind != HL_KIND_DEPTH && kind != HL_KIND_UINT)
             use |= HL_USE_LINEAR | HL_USE_BLEND;
         c->format[i].use = (uint8_t)use;

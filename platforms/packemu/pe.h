@@ -5,8 +5,8 @@
  *
  * Memory. A texel in work is `words` 32-bit words, the first channel in the
  * low bits of the first; formats of 8 and 16 bits have one word. Words are
- * numbers, not bytes: only pe_memory.c knows the order of bytes, of EDRAM
- * tiles and of samples.
+ * numbers, not bytes: only pe_memory.h's files know the order of bytes, of
+ * EDRAM tiles and of samples.
  *
  * A pass is cut into bins of PE_BIN x PE_BIN pixels. A bin's targets are
  * loaded into words of its own, drawn on, and stored, each bin by one thread,
@@ -24,8 +24,15 @@ struct pe_texture {
     uint32_t words;              /* of a texel in work, 1..4                 */
     uint8_t *memory;             /* all levels, in the machine's byte order;
                                   * targets without EDRAM: samples innermost */
-    size_t level[16];            /* byte offset of each level                */
+    size_t level[16];            /* byte offset of each level, of 4 each     */
     size_t bytes;
+    uint8_t samples;             /* a texel in memory                        */
+    uint8_t order, view_order;   /* enum pe_order, of `stored` and of `view` */
+    enum hl_format stored;       /* of words in memory: format, but FIXED32
+                                  * as the number that a resolve makes       */
+    enum hl_format view;         /* of words as shaders see them             */
+    bool remapped;
+    uint8_t remap[4];            /* plane of each channel; 4: zero, 5: one   */
     /* First EDRAM tile and tiles of a row and in all; count 0: not there.   */
     uint32_t tile, tile_pitch, tile_count;
 };
@@ -80,6 +87,8 @@ struct pe_program {
     const struct pe_vertex_kernel *vertex;
     struct pe_fragment_kernel fragment;  /* .stage.shade NULL: depth only    */
     union pe_spec spec[HL_MAX_SPECS];    /* by id                            */
+    /* Varyings that the one stage writes and the other reads.               */
+    uint8_t n_vary, vary[HL_PE_VARY_COUNT];
 };
 
 /* ---- draws --------------------------------------------------------------- */
@@ -112,6 +121,8 @@ struct pe_state {
     struct pe_pass *pass;        /* pe_pass.c's scratch, kept between passes */
     struct hl_timing *timing;    /* of the passes since the last submit      */
     uint32_t n_timings, max_timings, n_submitted;
+    struct hl_timing *done;      /* n_submitted of the last waited submit    */
+    uint32_t max_done;
 };
 
 /* ---- formats: pe_format.c ------------------------------------------------- */
@@ -119,8 +130,9 @@ struct pe_state {
 uint32_t pe_words(enum hl_format);
 /* n texels (n <= HL_PE_BATCH * 8) to and from planes of floats; channels that
  * a format lacks decode as 0, 0, 0, 1. Integer formats: planes hold bits.
- * Rounding: UNORM, SNORM to nearest (floor(x + 0.5)), half to nearest even,
- * fixed point as the console's model (away from zero); NaN becomes 0. */
+ * Rounding: UNORM, SNORM and fixed point to nearest, halves away from zero;
+ * floats to nearest even, at most their largest finite number; NaN becomes 0.
+ * pe_decode makes no planes that are NULL. */
 void pe_encode(enum hl_format, const float *const rgba[4], uint32_t n,
                uint32_t *words);
 void pe_decode(enum hl_format, const uint32_t *words, uint32_t n,
@@ -130,8 +142,9 @@ void pe_decode(enum hl_format, const uint32_t *words, uint32_t n,
 void pe_depth_encode(enum hl_format, const float *depth, uint32_t n,
                      uint32_t *codes);
 float pe_depth_decode(enum hl_format, uint32_t code);
-/* Blend of texels already there with what a stage wrote (pe_blend.c); BLEND
- * OFF encodes. `bias`: hl_console.color_exp_bias. mask[i] 0: untouched. */
+/* Blend of n texels already there with what a stage wrote (pe_blend.c); BLEND
+ * OFF encodes. `bias`: hl_console.color_exp_bias. mask[i] 0: untouched; mask
+ * NULL: all are written. Any n. */
 void pe_blend(enum hl_format, enum hl_blend, float constant, int bias,
               const float *const rgba[4], const uint8_t *mask, uint32_t n,
               uint32_t *words);
@@ -152,8 +165,9 @@ void pe_store_depth(struct pe_state *, uint32_t slot, const struct hl_rect *,
                     const uint32_t *codes, const uint8_t *stencil);
 /* After a pass, a bin's part: EDRAM to the texture's memory, for targets that
  * are sampled or read back (exponent bias, number format, endian swap), and
- * the average of samples into pass targets' resolves. Called by any thread
- * for disjoint rectangles. */
+ * the average of samples into pass targets' resolves, from what has been
+ * stored: a target that resolves is stored even if it is discarded. Called
+ * by any thread for disjoint rectangles. */
 void pe_resolve(struct pe_state *, const struct hl_bk_pass *,
                 const struct hl_rect *);
 
@@ -186,6 +200,7 @@ enum hl_result pe_tex_write(void *state, uint32_t slot, uint32_t mip,
                             const void *data, size_t bytes);
 enum hl_result pe_tex_read(void *state, uint32_t slot, void *out,
                            size_t bytes);
+enum hl_result pe_submit(void *state, bool wait);
 void pe_tex_destroy(struct pe_state *, uint32_t slot);
 enum hl_result pe_prog_create(void *state, uint32_t slot,
                               const struct hl_prog_desc *);

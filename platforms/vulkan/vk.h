@@ -218,6 +218,7 @@ void hlvk_name(struct hlvk *, VkObjectType, uint64_t handle, const char *);
 
 /* vk_caps.c */
 VkFormat hlvk_format(enum hl_format);
+bool hlvk_has_stencil(enum hl_format);
 VkImageAspectFlags hlvk_aspects(enum hl_format);
 VkImageUsageFlags hlvk_usage(const struct hl_tex_desc *);
 /* Usable at all: version, features, a graphics queue. */

@@ -21,11 +21,16 @@ static bool is_depth(enum hl_format format)
     return hl_format_info(format)->kind == HL_KIND_DEPTH;
 }
 
+bool hlvk_has_stencil(enum hl_format format)
+{
+    return is_depth(format) && hl_format_info(format)->bits[1] > 0;
+}
+
 VkImageAspectFlags hlvk_aspects(enum hl_format format)
 {
     if (!is_depth(format))
         return VK_IMAGE_ASPECT_COLOR_BIT;
-    if (hl_format_info(format)->bits[1] == 0)
+    if (!hlvk_has_stencil(format))
         return VK_IMAGE_ASPECT_DEPTH_BIT;
     return VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT;
 }
@@ -160,6 +165,9 @@ static void caps_formats(struct hlvk *v, struct hl_caps *caps,
     for (int i = 1; i < HL_FORMAT_COUNT; i++) {
         enum hl_format format = (enum hl_format)i;
         enum hl_format_kind kind = hl_format_info(format)->kind;
+        /* Formats of consoles: not to be asked about. */
+        if (formats[i] == VK_FORMAT_UNDEFINED)
+            continue;
         vkGetPhysicalDeviceFormatProperties2(v->physical, formats[i], &p);
         caps->format[i].use =
             format_use(p.formatProperties.optimalTilingFeatures);

@@ -210,8 +210,10 @@ static void read_timings(struct hlvk *v, struct hlvk_frame *f)
     uint32_t n = f->n_passes + 1;
     v->n_timings = 0;
     if (v->tick_ms <= 0.0 ||
-        !hl_bk_grow(v->device, &v->timings, &v->max_timings, n, sizeof *v->timings) ||
-        !hl_bk_grow(v->device, &v->stamps, &v->max_stamps, n, sizeof *v->stamps))
+        !hl_bk_grow(v->device, &v->timings, &v->max_timings, n,
+                    sizeof *v->timings) ||
+        !hl_bk_grow(v->device, &v->stamps, &v->max_stamps, n,
+                    sizeof *v->stamps))
         return;
     for (uint32_t at = 0; at < n; at += QUERIES) {
         uint32_t k = n - at < QUERIES ? n - at : QUERIES;

@@ -170,6 +170,10 @@ static enum hl_result view_make(struct hlvk *v, const struct hlvk_tex *t,
                                 enum hl_format format, uint32_t mips,
                                 VkImageUsageFlags use, VkImageView *out)
 {
+    VkImageAspectFlags aspects = hlvk_aspects(t->format);
+    /* Sampling takes one aspect. */
+    if (use == VK_IMAGE_USAGE_SAMPLED_BIT)
+        aspects &= ~(VkFlags)VK_IMAGE_ASPECT_STENCIL_BIT;
     /* Named, because the view's format may not allow all uses of the image. */
     VkImageViewUsageCreateInfo usage = {
         .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_USAGE_CREATE_INFO, .usage = use
@@ -178,11 +182,7 @@ static enum hl_result view_make(struct hlvk *v, const struct hlvk_tex *t,
         .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
         .pNext = &usage, .image = t->image,
         .viewType = VK_IMAGE_VIEW_TYPE_2D, .format = hlvk_format(format),
-        /* Sampling takes one aspect; an attachment ignores it. */
-        .subresourceRange = {
-            hlvk_aspects(t->format) & ~(VkFlags)VK_IMAGE_ASPECT_STENCIL_BIT,
-            0, mips, 0, 1
-        }
+        .subresourceRange = { aspects, 0, mips, 0, 1 }
     };
     return hlvk_check(v, vkCreateImageView(v->vk, &info, NULL, out),
                       "vkCreateImageView");

@@ -45,7 +45,8 @@ static enum hl_result find_sets(struct hlvk *v, const struct hl_bk_draw *draws,
 {
     uint64_t keys[HLVK_SETS][HL_MAX_TEXTURES], key[HL_MAX_TEXTURES];
     VkDescriptorSet sets[HLVK_SETS] = { VK_NULL_HANDLE };
-    if (!hl_bk_grow(v->device, &v->scratch, &v->max_scratch, n, sizeof *v->scratch))
+    if (!hl_bk_grow(v->device, &v->scratch, &v->max_scratch, n,
+                    sizeof *v->scratch))
         return HL_ERR_MEMORY;
     for (uint32_t i = 0; i < n; i++)
         for (uint32_t kind = 0; kind < HLVK_SETS; kind++) {
@@ -177,7 +178,8 @@ static VkRenderingAttachmentInfo depth_attachment(const struct hlvk *v,
          * that sample this very image. */
         .storeOp = p->depth_read_only ? VK_ATTACHMENT_STORE_OP_NONE
                                       : store_op(p->depth.discard),
-        .clearValue = { .depthStencil = { p->depth.clear[0], 0 } }
+        .clearValue = { .depthStencil = {
+            p->depth.clear[0], (uint32_t)p->depth.clear[1] } }
     };
 }
 
@@ -199,6 +201,8 @@ static void begin_rendering(const struct hlvk *v, VkCommandBuffer cmd,
     if (p->depth.slot != HL_NO_SLOT) {
         depth = depth_attachment(v, p);
         info.pDepthAttachment = &depth;
+        if (hlvk_has_stencil(v->texs[p->depth.slot]->format))
+            info.pStencilAttachment = &depth;
     }
     vkCmdBeginRendering(cmd, &info);
     vkCmdSetViewport(cmd, 0, 1, &viewport);

@@ -171,7 +171,11 @@ static const struct {
         { VK_BLEND_FACTOR_ZERO, VK_BLEND_FACTOR_ONE }, VK_BLEND_OP_ADD },
     [HL_BLEND_MAX] = {
         { VK_BLEND_FACTOR_ONE, VK_BLEND_FACTOR_ONE },
-        { VK_BLEND_FACTOR_ONE, VK_BLEND_FACTOR_ONE }, VK_BLEND_OP_MAX }
+        { VK_BLEND_FACTOR_ONE, VK_BLEND_FACTOR_ONE }, VK_BLEND_OP_MAX },
+    [HL_BLEND_SHIFT] = {
+        { VK_BLEND_FACTOR_ONE, VK_BLEND_FACTOR_CONSTANT_COLOR },
+        { VK_BLEND_FACTOR_ONE, VK_BLEND_FACTOR_CONSTANT_ALPHA },
+        VK_BLEND_OP_ADD }
 };
 
 static VkPipelineColorBlendAttachmentState blend_state(
@@ -189,24 +193,50 @@ static VkPipelineColorBlendAttachmentState blend_state(
     };
 }
 
+static const VkCompareOp compares[] = {
+    [HL_COMPARE_OFF] = VK_COMPARE_OP_ALWAYS,
+    [HL_COMPARE_NEVER] = VK_COMPARE_OP_NEVER,
+    [HL_COMPARE_LESS] = VK_COMPARE_OP_LESS,
+    [HL_COMPARE_LESS_EQUAL] = VK_COMPARE_OP_LESS_OR_EQUAL,
+    [HL_COMPARE_EQUAL] = VK_COMPARE_OP_EQUAL,
+    [HL_COMPARE_GREATER_EQUAL] = VK_COMPARE_OP_GREATER_OR_EQUAL,
+    [HL_COMPARE_GREATER] = VK_COMPARE_OP_GREATER,
+    [HL_COMPARE_ALWAYS] = VK_COMPARE_OP_ALWAYS
+};
+
+static VkStencilOpState stencil_state(const struct hl_stencil *s,
+                                      const struct hl_stencil_face *face)
+{
+    static const VkStencilOp ops[] = {
+        [HL_STENCIL_KEEP] = VK_STENCIL_OP_KEEP,
+        [HL_STENCIL_ZERO] = VK_STENCIL_OP_ZERO,
+        [HL_STENCIL_REPLACE] = VK_STENCIL_OP_REPLACE,
+        [HL_STENCIL_INCREMENT] = VK_STENCIL_OP_INCREMENT_AND_CLAMP,
+        [HL_STENCIL_DECREMENT] = VK_STENCIL_OP_DECREMENT_AND_CLAMP,
+        [HL_STENCIL_INCREMENT_WRAP] = VK_STENCIL_OP_INCREMENT_AND_WRAP,
+        [HL_STENCIL_DECREMENT_WRAP] = VK_STENCIL_OP_DECREMENT_AND_WRAP,
+        [HL_STENCIL_INVERT] = VK_STENCIL_OP_INVERT
+    };
+    return (VkStencilOpState){
+        .failOp = ops[face->fail], .passOp = ops[face->pass],
+        .depthFailOp = ops[face->depth_fail],
+        .compareOp = compares[face->test],
+        .compareMask = s->read_mask, .writeMask = s->write_mask,
+        .reference = s->reference
+    };
+}
+
 static VkPipelineDepthStencilStateCreateInfo depth_state(
     const struct hl_prog_desc *desc)
 {
-    static const VkCompareOp ops[] = {
-        [HL_COMPARE_OFF] = VK_COMPARE_OP_ALWAYS,
-        [HL_COMPARE_NEVER] = VK_COMPARE_OP_NEVER,
-        [HL_COMPARE_LESS] = VK_COMPARE_OP_LESS,
-        [HL_COMPARE_LESS_EQUAL] = VK_COMPARE_OP_LESS_OR_EQUAL,
-        [HL_COMPARE_EQUAL] = VK_COMPARE_OP_EQUAL,
-        [HL_COMPARE_GREATER_EQUAL] = VK_COMPARE_OP_GREATER_OR_EQUAL,
-        [HL_COMPARE_GREATER] = VK_COMPARE_OP_GREATER,
-        [HL_COMPARE_ALWAYS] = VK_COMPARE_OP_ALWAYS
-    };
     return (VkPipelineDepthStencilStateCreateInfo){
         .sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO,
         .depthTestEnable = desc->depth_test != HL_COMPARE_OFF,
         .depthWriteEnable = desc->depth_write,
-        .depthCompareOp = ops[desc->depth_test]
+        .depthCompareOp = compares[desc->depth_test],
+        .stencilTestEnable = desc->stencil.front.test != HL_COMPARE_OFF,
+        .front = stencil_state(&desc->stencil, &desc->stencil.front),
+        .back = stencil_state(&desc->stencil, &desc->stencil.back)
     };
 }
 
@@ -240,15 +270,20 @@ static VkResult output_pipeline(struct hlvk *v,
         blend[i] = blend_state(desc);
         colors[i] = hlvk_format(desc->color[i]);
     }
+    float k = desc->blend_constant;
     VkPipelineColorBlendStateCreateInfo blending = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
-        .attachmentCount = desc->n_colors, .pAttachments = blend
+        .attachmentCount = desc->n_colors, .pAttachments = blend,
+        .blendConstants = { k, k, k, k }
     };
     VkPipelineRenderingCreateInfo rendering = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO,
         .colorAttachmentCount = desc->n_colors,
         .pColorAttachmentFormats = colors,
-        .depthAttachmentFormat = hlvk_format(desc->depth)
+        .depthAttachmentFormat = hlvk_format(desc->depth),
+        .stencilAttachmentFormat = hlvk_has_stencil(desc->depth)
+                                   ? hlvk_format(desc->depth)
+                                   : VK_FORMAT_UNDEFINED
     };
     VkPipelineDepthStencilStateCreateInfo depth = depth_state(desc);
     VkPipelineRasterizationStateCreateInfo raster = raster_state(desc);

@@ -8,6 +8,7 @@
  * An embedder's own stage includes this file (through inferred.glsl) and
  * may read every block; slot 2 is its own to lay out. */
 #include "shaders/shared/lang.h"
+#include "shaders/shared/pack.h" /* HL_TWO16_*                                */
 
 /* Uniform slots (set 0). */
 #define HL_SLOT_FRAME 0
@@ -59,19 +60,14 @@
 #define HL_SPEC_DSF_C 15
 #define HL_SPEC_DSF_TAU 16
 #define HL_SPEC_LIGHT_SCALE 17   /* light = sampled * scale                  */
-#define HL_SPEC_TWO16 18         /* HL_TWO16_*                               */
+#define HL_SPEC_TWO16 18         /* HL_TWO16_* of pack.h                     */
 #define HL_SPEC_ID_STEPS 19      /* an id is stored as id / steps, float     */
 #define HL_SPEC_LIGHT_OUT 20     /* written = light * out, float             */
 #define HL_SPEC_SHIFT_X 21       /* clip x += w * shift, float: half a pixel */
 #define HL_SPEC_SHIFT_Y 22       /* the same for y (down)                    */
 #define HL_SPEC_DEPTH_READ 23    /* HL_DEPTH_READ_*                          */
 
-/* How two 16-bit numbers of 0..1 lie in a colour target. */
-#define HL_TWO16_UNORM 0    /* RG16_UNORM as it is                           */
-#define HL_TWO16_SIGNED 1   /* 2v - 1, read as s / 2 + 1 / 2                 */
-#define HL_TWO16_FIXED32 2  /* 64v - 32, resolved by 2^-5, read as above     */
-#define HL_TWO16_BYTES 3    /* four bytes, low first: little-endian RG16     */
-#define HL_TWO16_BYTES_ARGB 4 /* Y16_X16 in A8R8G8B8 words (PlayStation 3)   */
+/* How a depth target is sampled. */
 #define HL_DEPTH_READ_FLOAT 0
 #define HL_DEPTH_READ_BARG 1 /* three bytes of depth in rgb, high first      */
 
@@ -108,7 +104,7 @@
 #define HL_FLAT_VEC4S 28
 
 /* Varyings of mesh stages, by location. */
-#define HL_VARY_IDS 0       /* flat vec4: region id, exponent code, 1/far, far */
+#define HL_VARY_IDS 0       /* flat: region id, exponent code, 1/far, far   */
 #define HL_VARY_NORMAL 1
 #define HL_VARY_TANGENT 2
 #define HL_VARY_UV 3

@@ -45,14 +45,18 @@ static inline hl_vec4 hl_v4(float x, float y, float z, float w)
 #define hl_float(x) ((float)(x))
 #define hl_int(x) ((int)(x))
 #define hl_uint(x) ((uint)(x))
+#define hl_min(a, b) ((a) < (b) ? (a) : (b))
+#define hl_max(a, b) ((a) > (b) ? (a) : (b))
+#ifdef HL_LANG_MATH    /* a header that defines the six words below          */
+#include HL_LANG_MATH
+#else
 #define hl_sqrt(x) sqrtf(x)
 #define hl_floor(x) floorf(x)
 #define hl_abs(x) fabsf(x)
-#define hl_min(a, b) ((a) < (b) ? (a) : (b))
-#define hl_max(a, b) ((a) > (b) ? (a) : (b))
 #define hl_pow(a, b) powf(a, b)
 #define hl_exp2(x) exp2f(x)
 #define hl_log2(x) log2f(x)
+#endif
 #endif
 HL_FN float hl_clamp01(float x) { return hl_min(hl_max(x, 0.0f), 1.0f); }
 HL_FN float hl_dot3(hl_vec3 a, hl_vec3 b)

@@ -41,8 +41,10 @@ HL_FN float hl_depth_encode(float z, float inv_far)
     return hl_clamp01(z * inv_far);
 }
 
-/* A region id in a UNORM channel of `steps` = 2^bits - 1: exact, since
- * id / steps is within 2^-24 of a code that is 2^-16 wide. */
+/* A region id in a channel of `steps` steps from 0 to 1: exact, since
+ * id / steps is within 2^-24 of a code that is 2^-16 wide. A UNORM channel
+ * has 2^bits - 1 steps. Signed ones have 65,534 from -1 to 1, so that with
+ * 65,535 two ids would share the code of zero (spec/consoles 1.5). */
 HL_FN float hl_id_encode(float id, float inv_steps) { return id * inv_steps; }
 
 /* tangent.w = handedness * (1 + normal group); exact to 2^24 (K 3.1). */
@@ -61,4 +63,64 @@ HL_FN hl_vec2 hl_split16(float code)
     return hl_v2(hi, code - hi * 256.0f);
 }
 HL_FN float hl_join16(hl_vec2 hi_lo) { return hi_lo.x * 256.0f + hi_lo.y; }
+
+/* How two 16-bit numbers of 0..1 lie in a colour target (K 5). Machines
+ * without a target of two UNORM16 channels have one of these, each read back
+ * as two numbers by hl_two16_decode. */
+#define HL_TWO16_UNORM 0      /* RG16_UNORM as it is                         */
+#define HL_TWO16_SIGNED 1     /* 2v - 1, read as s / 2 + 1 / 2               */
+#define HL_TWO16_FIXED32 2    /* 64v - 32, resolved by 2^-5, read as above   */
+#define HL_TWO16_BYTES 3      /* four bytes, low first: little-endian RG16   */
+#define HL_TWO16_BYTES_ARGB 4 /* Y16_X16 in A8R8G8B8 words (PlayStation 3)   */
+
+/* A number of 0..1 as the two bytes of its 16-bit code, high first, each as
+ * the UNORM8 value that stores it. Clamped before it is split: bytes of a
+ * number that is out of range would not saturate. */
+HL_FN hl_vec2 hl_bytes16_encode(float v)
+{
+    hl_vec2 b = hl_split16(hl_floor(hl_clamp01(v) * 65535.0f + 0.5f));
+    return hl_v2(b.x * (1.0f / 255.0f), b.y * (1.0f / 255.0f));
+}
+
+/* What the stage writes. FIXED32: the whole range of -32..32 is used, as the
+ * machine's fixed point keeps 10 bits of fraction (K 5.1; spec/consoles 1.5).
+ * BYTES_ARGB: a word's bytes lie in memory as A R G B, so that A R are y and
+ * G B are x (K 5.2; spec/consoles 2.4). */
+HL_FN hl_vec4 hl_two16_encode(uint mode, float x, float y)
+{
+    if (mode == hl_uint(HL_TWO16_SIGNED))
+        return hl_v4(2.0f * x - 1.0f, 2.0f * y - 1.0f, 0.0f, 1.0f);
+    if (mode == hl_uint(HL_TWO16_FIXED32))
+        return hl_v4(64.0f * x - 32.0f, 64.0f * y - 32.0f, 0.0f, 1.0f);
+    if (mode == hl_uint(HL_TWO16_BYTES) ||
+        mode == hl_uint(HL_TWO16_BYTES_ARGB)) {
+        hl_vec2 a = hl_bytes16_encode(x);
+        hl_vec2 b = hl_bytes16_encode(y);
+        if (mode == hl_uint(HL_TWO16_BYTES))
+            return hl_v4(a.y, a.x, b.y, b.x);
+        return hl_v4(b.y, a.x, a.y, b.x);
+    }
+    return hl_v4(x, y, 0.0f, 1.0f);
+}
+
+/* Both numbers from what is sampled: signed ones for SIGNED and FIXED32, in
+ * which 1 / 2 is exact, UNORM16 for all others. */
+HL_FN hl_vec2 hl_two16_decode(uint mode, hl_vec2 s)
+{
+    if (mode == hl_uint(HL_TWO16_SIGNED) || mode == hl_uint(HL_TWO16_FIXED32))
+        return hl_v2(0.5f * s.x + 0.5f, 0.5f * s.y + 0.5f);
+    return s;
+}
+
+/* Depth of a D24S8 word read as colour with the remap that gives its bytes
+ * as rgb, high first (K 5.2). The bytes are rounded and joined as integers,
+ * which are exact below 2^24: a dot product with the bytes' weights is up to
+ * two steps off and exceeds 1 (spec/consoles 2.5). */
+HL_FN float hl_depth_barg(hl_vec3 c)
+{
+    float hi = hl_floor(c.x * 255.0f + 0.5f);
+    float mid = hl_floor(c.y * 255.0f + 0.5f);
+    float lo = hl_floor(c.z * 255.0f + 0.5f);
+    return (hi * 65536.0f + mid * 256.0f + lo) / 16777215.0f;
+}
 #endif
