@@ -18,6 +18,7 @@ struct world {
     uint32_t width, height;      /* of most textures                         */
     hl_tex tex[TEXTURES];
     struct hl_tex_desc desc[TEXTURES];
+    uint32_t bound;              /* bits: targets of the pass in hand        */
     hl_buf buf[BUFFERS];         /* vertex, index, uniform, storage          */
 };
 
@@ -59,23 +60,29 @@ static void make_texture(struct world *w, uint32_t i)
     struct hl_tex_desc *d = &w->desc[i];
     bool other = fz_byte(f) < 64;
     memset(d, 0, sizeof *d);
-    d->format = (enum hl_format)fz_below(f, HL_FORMAT_COUNT);
+    d->format = (enum hl_format)(1 + fz_below(f, HL_FORMAT_COUNT - 1));
     d->width = other ? 1 + fz_below(f, SIDE) : w->width;
     d->height = other ? 1 + fz_below(f, SIDE) : w->height;
     d->samples = fz_below(f, 3) ? 1 : 1u << fz_below(f, 4);
-    d->mips = fz_below(f, 4) ? 1 : fz_below(f, 9);
+    d->mips = fz_below(f, 8) ? 1 : fz_below(f, 9);
     d->usage = fz_below(f, 8) ? HL_TEX_SAMPLED | HL_TEX_TARGET |
                                 HL_TEX_READBACK : fz_below(f, 8);
     d->sample_as = (enum hl_format)(fz_below(f, 4) ? 0u : fz_below(
                                     f, HL_FORMAT_COUNT));
     d->console = some_console(f);
-    if (hl_tex_create(w->device, &w->tex[i], d) != HL_OK) {
-        /* As it would be without the console's own, which is the rarer. */
+    /* What is refused is asked for again without the console's own, which
+     * is the rarer, and then with less. */
+    for (int less = 0; less < 3; less++) {
+        if (hl_tex_create(w->device, &w->tex[i], d) == HL_OK)
+            return;
         memset(&d->console, 0, sizeof d->console);
         d->sample_as = HL_FORMAT_NONE;
-        d->samples = d->mips = 1;
+        d->mips = 1;
         d->usage = HL_TEX_SAMPLED | HL_TEX_TARGET | HL_TEX_READBACK;
-        hl_tex_create(w->device, &w->tex[i], d);
+        if (less == 1) {
+            d->samples = 1;
+            d->format = HL_FORMAT_RGBA8_UNORM;
+        }
     }
 }
 
@@ -206,6 +213,8 @@ static hl_prog some_program(struct world *w, const struct hl_pass *pass,
     p.mirrored = fz_bool(f);
     if (hl_prog_create(w->device, &out, &p) != HL_OK) {
         p.blend = HL_BLEND_OFF;
+        p.vertex.builtin = HL_SHADER_SCREEN_VERT;
+        p.fragment.builtin = HL_SHADER_LIGHT_BATCH_FRAG;
         memset(&p.stencil, 0, sizeof p.stencil);
         hl_prog_create(w->device, &out, &p);
     }
@@ -244,9 +253,10 @@ static void some_draw(struct world *w, struct hl_draw *d,
         d->storage[i] = some_range(w, 3);
     for (int i = 0; i < HL_MAX_TEXTURES; i++) {
         memset(&bound[i], 0, sizeof bound[i]);
-        if (fz_below(f, 4))
-            bound[i].tex = w->tex[fz_below(f, TEXTURES)];
-        bound[i].filter = (uint8_t)fz_below(f, 3);
+        uint32_t t = fz_below(f, TEXTURES);
+        if (!(w->bound >> t & 1) || fz_byte(f) == 255)
+            bound[i].tex = w->tex[t];
+        bound[i].filter = (uint8_t)(fz_below(f, 8) ? 0 : fz_below(f, 3));
         bound[i].wrap_u = (uint8_t)fz_below(f, 3);
         bound[i].wrap_v = (uint8_t)fz_below(f, 3);
     }
@@ -269,6 +279,7 @@ static void some_target(struct world *w, struct hl_target *t, uint32_t i)
 {
     struct fz *f = w->f;
     t->tex = w->tex[i];
+    w->bound |= 1u << i;
     t->load = (enum hl_load)fz_below(f, 3);
     t->discard = fz_byte(f) > 240;
     for (int c = 0; c < 4; c++)
@@ -317,6 +328,7 @@ static void some_pass(struct world *w)
     p.label = "fuzz";
     p.half_pixel_offset =
         hl_device_caps(w->device)->profile.integer_centers && fz_bool(w->f);
+    w->bound = 0;
     bool has_depth = some_targets(w, &p, color, &depth);
     p.draws = draw;
     p.n_draws = fz_below(w->f, DRAWS + 1);
