@@ -85,6 +85,10 @@ void hl_bk_free(struct hl_device *, void *);
  * items, contents kept; false: out of memory, nothing changed. */
 bool hl_bk_grow(struct hl_device *, void *array, uint32_t *max, uint32_t need,
                 size_t item);
+/* For functions that a backend offers besides: its state, and the slot of a
+ * texture, where the device is `backend`'s and the handle live; else NULL. */
+void *hl_bk_texture(struct hl_device *, const struct hl_backend *backend,
+                    hl_tex, uint32_t *slot);
 /* text is joined from up to three parts (NULL ends). */
 void hl_bk_log(struct hl_device *, enum hl_log_level, enum hl_log_id,
                const char *a, const char *b, const char *c);

@@ -79,6 +79,14 @@ void hl_bk_free(struct hl_device *d, void *p)
         d->hooks.free(d->hooks.user, p);
 }
 
+void *hl_bk_texture(struct hl_device *d, const struct hl_backend *backend,
+                    hl_tex tex, uint32_t *slot)
+{
+    *slot = hl_pool_find(&d->pool[HL_POOL_TEX], tex.id);
+    return d->backend->open == backend->open && *slot != HL_NO_SLOT ? d->state
+                                                                  : NULL;
+}
+
 bool hl_bk_grow(struct hl_device *d, void *array, uint32_t *max, uint32_t need,
                 size_t item)
 {

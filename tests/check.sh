@@ -30,7 +30,7 @@ arrows() {
 }
 
 core_public='core/(halflight|needs|plan|scene|frame|mesh|ids)\.h'
-hal_public='hal/(hal|caps|backend|formats)\.'
+hal_public='hal/(hal|caps|backend|formats|profile)\.'
 arrows includes_shaders shaders 'shaders/'
 arrows includes_shared shaders/shared 'shaders/shared/'
 arrows includes_hal hal 'hal/|shaders/(shared/|variants\.def)'
@@ -38,6 +38,9 @@ arrows includes_core core 'core/|hal/|shaders/(shared/|variants\.def)'
 arrows includes_null platforms/null "$hal_public|hal/text\.h|platforms/null/|shaders/shared/"
 arrows includes_vulkan platforms/vulkan "$hal_public|platforms/vulkan/|shaders/shared/"
 arrows includes_gl platforms/gl "$hal_public|hal/text\.h|platforms/gl/|shaders/shared/"
+arrows includes_packemu platforms/packemu "$hal_public|hal/text\.h|platforms/packemu/|shaders/(shared/|variants\.def)"
+arrows includes_profiles platforms/profiles "$hal_public|platforms/profiles/|shaders/shared/"
+arrows includes_conform platforms/conform "$hal_public|hal/text\.h|$core_public|shaders/shared/|platforms/(conform|profiles)/|platforms/packemu/hl_packemu\.h"
 arrows includes_host platforms/host 'platforms/host/'
 arrows includes_reference platforms/reference 'platforms/reference/|platforms/host/scene\.h'
 arrows includes_tool platforms/cli "$hal_public|$core_public|shaders/shared/|platforms/"
@@ -45,18 +48,32 @@ grep -rnE '#include[[:space:]]*<(vulkan|GL|EGL|GLFW|assimp|cjson|png|jpeglib|pth
     core hal shaders > "$tmp/out"
 verdict no_platform_header_below
 
-nm -u "$build/libhalflight.a" | awk '$1 == "U" { print $2 }' | sort -u |
-    grep -v '^hl_' > "$tmp/used"
-case $build in
-*sanitize*|*coverage*) echo "skip symbols: instrumented build" ;;
-*)
+# symbols NAME LIBRARY OWN MORE: what a library asks of a platform is in
+# symbols.txt or matches MORE; its own symbols, and those of libraries below
+# it, begin with OWN.
+symbols() {
+    case $build in
+    *sanitize*|*coverage*)
+        echo "skip $1: instrumented build"
+        return ;;
+    esac
+    nm -u "$build/lib$2.a" | awk '$1 == "U" { print $2 }' | sort -u |
+        grep -vE "^($3)_|^_GLOBAL_OFFSET_TABLE_\$" | grep -vxE "$4" > "$tmp/used"
     grep -v '^#' tests/symbols.txt | sort -u | comm -13 - "$tmp/used" > "$tmp/out"
-    verdict symbols ;;
-esac
+    verdict "$1"
+}
+symbols symbols halflight hl 'none'
+symbols symbols_packemu halflight-packemu 'hl|pe' 'pthread_[a-z_]+|clock_gettime|sysconf'
+symbols symbols_profiles halflight-profiles hl 'none'
+# The models of the conformance suite compute in double precision by the
+# mathematics library; nothing that is drawn comes from them.
+symbols symbols_conform halflight-conform 'hl|cf' \
+    'a?(sin|cos|tan)|sincos|atan2|f(min|max|mod|abs)|frexp|(ld)?exp2?f?|log2?|pow|strn?(chr|cmp)|strrchr'
 
+libraries='halflight halflight-null halflight-packemu halflight-profiles halflight-conform halflight-vulkan halflight-gl'
 # Libraries neither print, abort, allocate behind the hooks' back nor keep
 # state of their own.
-for lib in halflight halflight-null halflight-vulkan halflight-gl; do
+for lib in $libraries; do
     nm -u "$build/lib$lib.a" | awk -v lib=$lib '$1 == "U" { print lib ": " $2 }'
 done | grep -wE 'f?printf|f?puts|fputc|putchar|fwrite|abort|exit|malloc|calloc|realloc|free|getenv|__assert_fail|stdout|stderr|errno' \
     > "$tmp/out"
@@ -64,7 +81,7 @@ case $build in
 *sanitize*|*coverage*) echo "skip libraries_keep_quiet: instrumented build" ;;
 *) verdict libraries_keep_quiet ;;
 esac
-for lib in halflight halflight-null halflight-vulkan halflight-gl; do
+for lib in $libraries; do
     objdump -h "$build/lib$lib.a" | awk -v lib=$lib '/file format/ { file = $1 }
         ($2 == ".data" || $2 == ".bss") && $3 !~ /^0*$/ { print lib ": " file " " $2 " holds 0x" $3 }'
 done > "$tmp/out"
@@ -74,9 +91,10 @@ case $build in
 esac
 
 # Every public header alone, as C99 and as C++.
-for h in hal/caps.h hal/hal.h hal/backend.h core/needs.h core/plan.h core/scene.h core/frame.h \
+for h in hal/caps.h hal/hal.h hal/backend.h hal/text.h core/needs.h core/plan.h core/scene.h core/frame.h \
     core/mesh.h core/ids.h core/halflight.h platforms/platforms.h platforms/null/hl_null.h \
-    platforms/vulkan/hl_vulkan.h platforms/gl/hl_gl.h; do
+    platforms/vulkan/hl_vulkan.h platforms/gl/hl_gl.h platforms/packemu/hl_packemu.h \
+    platforms/profiles/hl_profiles.h platforms/conform/conform.h; do
     echo "#include \"$h\"" > "$tmp/h.c"
     ${CC:-gcc} -std=c99 -pedantic -Wall -Wextra -Wconversion -Werror -I. -fsyntax-only "$tmp/h.c" \
         2>> "$tmp/alone"

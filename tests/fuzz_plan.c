@@ -25,11 +25,11 @@ static uint32_t choice(struct fz *f, bool wild, uint32_t n)
 
 static void some_sizes(struct fz *f, bool wild, struct hl_needs *n)
 {
-    n->width = count(f, wild, 2048) + !wild;
-    n->height = count(f, wild, 2048) + !wild;
+    n->width = count(f, wild, 2048) + (wild ? 0u : 1u);
+    n->height = count(f, wild, 2048) + (wild ? 0u : 1u);
     if (fz_bool(f)) {
-        n->light_width = count(f, wild, 2048) + !wild;
-        n->light_height = count(f, wild, 2048) + !wild;
+        n->light_width = count(f, wild, 2048) + (wild ? 0u : 1u);
+        n->light_height = count(f, wild, 2048) + (wild ? 0u : 1u);
     }
     n->samples = fz_bool(f) ? 0 : wild ? fz_count(f) : 1u << fz_below(f, 4);
 }
@@ -40,7 +40,7 @@ static void some_choices(struct fz *f, bool wild, struct hl_needs *n)
     n->light_depth_bound = fz_bool(f);
     n->light_path = (enum hl_light_path)choice(f, wild, 4);
     n->batch = fz_bool(f) ? 0 : choice(f, wild, 17);
-    n->tile = fz_bool(f) ? 0 : 8 * !wild + count(f, wild, 248);
+    n->tile = fz_bool(f) ? 0 : (wild ? 0u : 8u) + count(f, wild, 248);
     n->no_tile_depth = fz_bool(f);
     n->no_scissor = fz_bool(f);
     n->dsf = (enum hl_dsf)choice(f, wild, 4);

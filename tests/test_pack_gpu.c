@@ -9,6 +9,7 @@
 #include "shaders/shared/pack.h"
 #include "shaders/shared/shade.h"
 #include "tests/check.h"
+#include "tests/stage_kernels.h"
 
 static const uint32_t pack_spirv[] = {
 #include "pack_frag.x"
@@ -78,7 +79,8 @@ static void draw(struct bench *b, uint32_t what, enum hl_format format,
                  hl_tex target, hl_tex second)
 {
     struct hl_device *d = b->m->device;
-    struct hl_code code = { pack_spirv, sizeof pack_spirv, pack_glsl, NULL };
+    struct hl_code code = { pack_spirv, sizeof pack_spirv, pack_glsl,
+                            pack_kernel() };
     struct hl_prog_desc p = {
         .label = "pack", .vertex = { HL_SHADER_SCREEN_VERT, NULL },
         .fragment = { HL_SHADER_NONE, &code }, .spec = { { 0, what } },
@@ -544,7 +546,8 @@ static void ids_survive_as_numbers(void **state)
     end(b);
 }
 
-#define TEST(name) CK_ON("vulkan", name), CK_ON("gl", name)
+#define TEST(name) \
+    CK_ON("vulkan", name), CK_ON("gl", name), CK_ON("packemu", name)
 
 int main(void)
 {

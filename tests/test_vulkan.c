@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Zlib */
 /* The Vulkan backend: what the suite over all backends cannot ask of devices,
- * formats and pictures; the GL backend draws the pictures too. Validation with
- * synchronisation checks is on; every test fails on an error that the layers
- * report, and the canary proves that they would. */
+ * formats and pictures; GL and the software device draw the pictures too.
+ * Validation with synchronisation checks is on; every test fails on an error
+ * that the layers report, and the canary proves that they would. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -552,7 +552,8 @@ static void only_trilinear_looks_past_level_zero(void **state)
 }
 
 #define ON(name) CK_ON("vulkan", name)
-#define DRAWN(name) CK_ON("vulkan", name), CK_ON("gl", name)
+#define DRAWN(name) \
+    CK_ON("vulkan", name), CK_ON("gl", name), CK_ON("packemu", name)
 
 int main(void)
 {

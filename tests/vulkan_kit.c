@@ -2,6 +2,7 @@
 #include <string.h>
 #include "hal/device.h"
 #include "shaders/shared/block.h"
+#include "tests/stage_kernels.h"
 #include "tests/vulkan_kit.h"
 
 static const uint32_t frag_spirv[] = {
@@ -39,6 +40,8 @@ struct hl_object_block vt_object(float move_x)
     memset(&o, 0, sizeof o);
     o.clip.column[0].x = o.clip.column[1].y = o.clip.column[2].z = 1.0f;
     o.clip.column[3] = (hl_vec4){ move_x, 0.0f, 0.0f, 1.0f };
+    o.model_view.column[0].x = o.model_view.column[1].y = 1.0f;
+    o.model_view.column[2].z = o.model_view.column[3].w = 1.0f;
     o.ids.x = 7.0f;
     return o;
 }
@@ -81,8 +84,10 @@ struct rig vt_rig(void **state)
 
 struct hl_prog_desc vt_prog_desc(uint32_t what)
 {
-    static const struct hl_code code = { frag_spirv, sizeof frag_spirv,
-                                         frag_glsl, NULL };
+    /* The desc borrows it: one for all calls. */
+    static struct hl_code code = { frag_spirv, sizeof frag_spirv, frag_glsl,
+                                   NULL };
+    code.kernel = vulkan_kernel();
     struct hl_prog_desc p = {
         .vertex = { HL_SHADER_MESH_OWN_VERT, NULL },
         .fragment = { HL_SHADER_NONE, &code },

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Zlib */
 #ifndef VULKAN_KIT_H
 #define VULKAN_KIT_H
-/* What the tests of the Vulkan backend share: a device with a quad, uniforms
- * and a target, a stage of their own, and the backend's inside. */
+/* What the tests of the Vulkan backend share, and of others that draw the same:
+ * a device with a quad, uniforms and a target, a stage of their own, and the
+ * backend's inside. */
 #include "platforms/vulkan/vk.h"
 #include "shaders/shared/block.h"
 #include "tests/check.h"

@@ -17,6 +17,17 @@
 
 enum { PE_BIN = 64 };
 
+/* Hot loops, built for AVX2 as well and chosen when the program starts, where
+ * compiler and C library can do so. Same operations in the same order: same
+ * bytes. Sanitizers are not ready yet when the choice is made. */
+#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && \
+    defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__) && !defined(__AVX2__)
+#define PE_WIDE __attribute__((target_clones("avx2", "default")))
+#else
+#define PE_WIDE
+#endif
+
 /* ---- textures: pe_texture.c --------------------------------------------- */
 
 struct pe_texture {

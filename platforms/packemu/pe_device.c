@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Zlib */
 /* The device: opening, what it can do, buffers, time, the backend's table. */
-#include "hal/device.h"
 #include "hal/text.h"
 #include "platforms/packemu/pe_memory.h"
 
@@ -245,13 +244,12 @@ static uint32_t pe_timings(void *state, struct hl_timing *out, uint32_t max)
 const uint8_t *hl_packemu_memory(struct hl_device *d, hl_tex tex,
                                  size_t *bytes)
 {
+    uint32_t slot;
+    const struct pe_state *s = hl_bk_texture(d, &hl_backend_packemu, tex,
+                                             &slot);
     *bytes = 0;
-    if (d->backend->open != pe_open)
+    if (!s)
         return NULL;
-    uint32_t slot = hl_pool_find(&d->pool[HL_POOL_TEX], tex.id);
-    if (slot == HL_NO_SLOT)
-        return NULL;
-    const struct pe_state *s = d->state;
     const struct pe_texture *t = &s->tex[slot];
     if (t->memory)
         *bytes = (size_t)t->desc.width * t->desc.height * t->samples *

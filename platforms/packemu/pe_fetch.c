@@ -140,6 +140,7 @@ static void narrow_corners(const struct pe_texture *t, const int32_t *x,
 }
 
 /* Whole texels of 2 x 2, all their words. */
+PE_WIDE
 static void gather_texels(const struct pe_texture *t, const int32_t *x,
                           const int32_t *y, uint32_t n,
                           uint32_t *const out[4])
@@ -160,6 +161,7 @@ static void gather_texels(const struct pe_texture *t, const int32_t *x,
                              (size_t)n * t->words);
 }
 
+PE_WIDE
 void pe_gather_words(const struct pe_view *v, uint32_t word, const int32_t *x,
                      const int32_t *y, uint32_t n,
                      uint32_t (*out)[HL_PE_BATCH])

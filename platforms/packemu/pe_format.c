@@ -44,6 +44,7 @@ struct pe_channel pe_channel(enum hl_format format, uint32_t c)
 
 /* ---- numbers to codes ---------------------------------------------------- */
 
+PE_WIDE
 static void unorm_encode(const float *restrict x, uint32_t n, float max,
                          uint32_t *restrict code)
 {
@@ -53,6 +54,7 @@ static void unorm_encode(const float *restrict x, uint32_t n, float max,
     }
 }
 
+PE_WIDE
 static void snorm_encode(const float *restrict x, uint32_t n, uint32_t mask,
                          uint32_t *restrict code)
 {
@@ -65,6 +67,7 @@ static void snorm_encode(const float *restrict x, uint32_t n, uint32_t mask,
     }
 }
 
+PE_WIDE
 static void srgb_encode(const float *restrict x, uint32_t n,
                         uint32_t *restrict code)
 {
@@ -77,6 +80,7 @@ static void srgb_encode(const float *restrict x, uint32_t n,
 }
 
 /* The largest finite number stands for all above it, infinity too. */
+PE_WIDE
 static void f16_encode(const float *restrict x, uint32_t n,
                        uint32_t *restrict code)
 {
@@ -88,6 +92,7 @@ static void f16_encode(const float *restrict x, uint32_t n,
     }
 }
 
+PE_WIDE
 static void f11_encode(const float *restrict x, uint32_t n,
                        uint32_t *restrict code)
 {
@@ -95,6 +100,7 @@ static void f11_encode(const float *restrict x, uint32_t n,
         code[i] = pe_small_encode(pe_clamp(x[i], 0.0f, 65024.0f), 6, 15);
 }
 
+PE_WIDE
 static void f10_encode(const float *restrict x, uint32_t n,
                        uint32_t *restrict code)
 {
@@ -103,6 +109,7 @@ static void f10_encode(const float *restrict x, uint32_t n,
 }
 
 /* Which NaN an operation gives differs between machines: none is kept. */
+PE_WIDE
 static void f32_encode(const float *restrict x, uint32_t n,
                        uint32_t *restrict code)
 {
@@ -131,6 +138,7 @@ void pe_code_encode(enum pe_code code, uint32_t bits, const float *restrict x,
 /* ---- codes to numbers ---------------------------------------------------- */
 
 /* A division is correctly rounded; a product with 1 / max is not. */
+PE_WIDE
 static void unorm_decode(const uint32_t *restrict code, uint32_t n, float max,
                          float *restrict x)
 {
@@ -138,6 +146,7 @@ static void unorm_decode(const uint32_t *restrict code, uint32_t n, float max,
         x[i] = (float)(int32_t)code[i] / max;
 }
 
+PE_WIDE
 static void snorm_decode(const uint32_t *restrict code, uint32_t n,
                          uint32_t mask, float *restrict x)
 {
@@ -150,6 +159,7 @@ static void snorm_decode(const uint32_t *restrict code, uint32_t n,
     }
 }
 
+PE_WIDE
 static void f16_decode(const uint32_t *restrict code, uint32_t n,
                        float *restrict x)
 {
@@ -159,6 +169,7 @@ static void f16_decode(const uint32_t *restrict code, uint32_t n,
     }
 }
 
+PE_WIDE
 static void small_decode(const uint32_t *restrict code, uint32_t n,
                          int mantissa, float *restrict x)
 {
@@ -166,6 +177,7 @@ static void small_decode(const uint32_t *restrict code, uint32_t n,
         x[i] = pe_small_decode_ieee(code[i], mantissa);
 }
 
+PE_WIDE
 static void srgb_decode(const uint32_t *restrict code, uint32_t n,
                         float *restrict x)
 {

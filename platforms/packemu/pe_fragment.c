@@ -206,6 +206,7 @@ static void join(struct pe_bin *b, const struct pe_tri *t,
     g->f.n += n;
 }
 
+PE_WIDE
 static void shade_run(struct pe_bin *b, const struct pe_tri *t,
                       const uint16_t *pass, uint32_t n)
 {

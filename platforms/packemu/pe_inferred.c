@@ -32,6 +32,7 @@ static void taps_along(const int32_t *pixel, float ratio, uint32_t n,
     }
 }
 
+PE_WIDE
 void pe_find_taps(const struct pe_draw *d, const struct hl_pe_fragments *f,
                   struct pe_taps *t)
 {
@@ -86,6 +87,7 @@ static void split_numbers(const struct pe_draw *d, float (*v)[HL_PE_BATCH],
     }
 }
 
+PE_WIDE
 static void read_dsf(const struct pe_draw *d, const struct pe_taps *t,
                      uint32_t n, planes depth, planes id)
 {
@@ -104,6 +106,7 @@ static void read_dsf(const struct pe_draw *d, const struct pe_taps *t,
     }
 }
 
+PE_WIDE
 void pe_accept_taps(const struct pe_draw *d, const struct hl_pe_fragments *f,
                     const struct pe_taps *t, float out[4][HL_PE_BATCH])
 {
@@ -204,6 +207,7 @@ static void unpack_unorm8(const uint32_t *w, uint32_t n, planes out)
 }
 
 /* The words of a tap to its four channels. */
+PE_WIDE
 static void unpack(uint32_t bits, const uint32_t *const w[4], uint32_t n,
                    planes out)
 {
@@ -256,6 +260,7 @@ static void weigh(planes taps[4], planes w, uint32_t n, planes out)
 }
 
 /* The L-buffer under the fragments, filtered. */
+PE_WIDE
 static void light(const struct pe_draw *d, const struct hl_pe_fragments *f,
                   planes out)
 {

@@ -76,6 +76,7 @@ PE_INLINE void add(struct pe_lit_run *r, const hl_vec4 *light,
 typedef void (*add_fn)(struct pe_lit_run *, const hl_vec4 *);
 
 #define PE_ADD(shape, what)                                                  \
+    PE_WIDE                                                                  \
     static void add_##shape##_##what(struct pe_lit_run *r,                   \
                                      const hl_vec4 *light)                   \
     { add(r, light, shape, PE_LIT_##what); }
