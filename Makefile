@@ -186,8 +186,9 @@ test: deps
 	@sh tests/run.sh $(B)
 check: all
 	@sh tests/check.sh $(B)
-bench: all
+bench: all $(B)/tests/bench_light
 	@sh tests/bench.sh $(B)/halflight fig8
+	@$(B)/tests/bench_light
 clean:
 	rm -rf build
 

@@ -3,8 +3,9 @@
 # bench.sh TOOL [SCENE [LIGHTS.csv CAMERA AMBIENT]] [-- FLOOR COMMAND...]
 # Times of the pipelines for one scene, in turn, so that a busy moment of the
 # machine falls on all of them: medians over rounds of frames, with their
-# spread, as ratios to inferred lighting. FLOOR is any program that prints
-# "median_ms=X"; it takes its turn too. ROUNDS and FRAMES may be set.
+# spread, as ratios to inferred lighting; that also on the other backends.
+# FLOOR is any program that prints "median_ms=X"; it takes its turn too.
+# ROUNDS and FRAMES may be set.
 set -eu
 tool=$1
 shift
@@ -36,6 +37,9 @@ while [ $i -lt "$rounds" ]; do
     render scissored --pipeline forward-multipass --scissor on
     render forward --pipeline forward
     render inferred --pipeline inferred --light-size 800x450
+    for backend in gl packemu; do
+        render $backend --backend $backend --pipeline inferred --light-size 800x450
+    done
     if [ $# -gt 0 ]; then
         "$@" | sed -n 's/.*median_ms=\([0-9.]*\).*/\1/p' >> "$tmp/floor.ms"
     fi
@@ -45,7 +49,7 @@ done
 base=$(middle "$tmp/inferred.ms")
 echo "$scene, 1280 x 720, $(sed -n 's/.*"device":[[:space:]]*"\([^"]*\)".*/\1/p' "$tmp/inferred.json" | head -n 1), $rounds rounds of $frames frames"
 echo "pipeline      median ms   min..max of rounds   against inferred   light evaluations"
-for name in multipass scissored forward inferred floor; do
+for name in multipass scissored forward inferred gl packemu floor; do
     [ -f "$tmp/$name.ms" ] || continue
     evals=-
     [ -f "$tmp/$name.json" ] && evals=$(value light_evaluations "$tmp/$name.json")

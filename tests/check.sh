@@ -63,7 +63,8 @@ symbols() {
     verdict "$1"
 }
 symbols symbols halflight hl 'none'
-symbols symbols_packemu halflight-packemu 'hl|pe' 'pthread_[a-z_]+|clock_gettime|sysconf'
+# __cpu: of compilers' own run time, for loops cloned by processor.
+symbols symbols_packemu halflight-packemu 'hl|pe' 'pthread_[a-z_]+|clock_gettime|sysconf|__cpu_(model|indicator_init)'
 symbols symbols_profiles halflight-profiles hl 'none'
 # The models of the conformance suite compute in double precision by the
 # mathematics library; nothing that is drawn comes from them.

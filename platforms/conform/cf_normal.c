@@ -239,7 +239,7 @@ static void fill_words(struct bench *b, uint32_t picture)
     }
 }
 
-static void finite(struct bench *b)
+static void check_finite(struct bench *b)
 {
     struct cf *cf = b->cf;
     struct hl_conform_result r = cf_result(
@@ -356,7 +356,7 @@ const char *cf_normal(struct cf *cf, const struct cf_group *g)
         } else {
             report_angles(&b);
             if (hl_format_info(b.store.format)->bytes == 4)
-                finite(&b);
+                check_finite(&b);
             special(&b);
         }
     }

@@ -322,8 +322,8 @@ void pe_raw_begin(struct pe_bin *b, const struct pe_tri *t)
 
 /* ---- draws --------------------------------------------------------------- */
 
-/* Varyings that the vertex stage lacks are zero, and so are outputs that an
- * embedder's stage leaves out. */
+/* Varyings that the vertex stage lacks are zero, and so are outputs that a
+ * stage may leave out: what a batch before left would depend on threads. */
 static void clear_batch(struct pe_bin *b)
 {
     const struct pe_program *p = b->draw->program;
@@ -334,7 +334,7 @@ static void clear_batch(struct pe_bin *b)
     for (uint32_t v = 0; v < HL_PE_VARY_COUNT; v++)
         if (lacks >> v & 1)
             memset(f->vary[v], 0, sizeof f->vary[v]);
-    if (p->fragment.vary == 0xffffffffu)
+    if (p->fragment.vary == 0xffffffffu || p->desc.n_colors > 1)
         memset(f->color, 0, p->desc.n_colors * sizeof f->color[0]);
     if (b->stage->uv_slope && (lacks >> HL_PE_U & 1))
         memset(f->duv, 0, sizeof f->duv);

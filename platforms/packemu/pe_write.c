@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Zlib */
 /* What stages wrote, into the bin's texels. */
+#include <string.h>
 #include "platforms/packemu/pe_pass.h"
 
 /* ---- texels of a batch --------------------------------------------------- */
@@ -154,6 +155,10 @@ void pe_rect_run(struct pe_bin *b, const struct hl_rect *r)
     if (!b->stage)
         return;
     p->fragment.rect(b->draw, r, b->planes);
+    /* They write one target; others get zeros, on any thread. */
+    if (p->desc.n_colors > 1)
+        memset(b->planes[4], 0, (p->desc.n_colors - 1) * 4 *
+                                sizeof b->planes[0]);
     for (uint32_t t = 0; t < p->desc.n_colors; t++)
         rect_target(b, t, r);
 }
