@@ -46,8 +46,12 @@ void pe_project(const struct pe_viewport *v, const float (*clip)[PE_RUN],
         float iw = 1.0f / (w < W_MIN ? 1.0f : w);
         float px = x * iw * v->sx + v->ox, py = y * iw * v->sy + v->oy;
         p->out[i] = outside(x, y, z, w, px, py);
-        p->x[i] = snap(bound(px));
-        p->y[i] = snap(bound(py));
+        px = bound(px);
+        py = bound(py);
+        p->x[i] = snap(px);
+        p->y[i] = snap(py);
+        p->rx[i] = px - (float)p->x[i] * (1.0f / PE_SUB);
+        p->ry[i] = py - (float)p->y[i] * (1.0f / PE_SUB);
         p->z[i] = z / (w < W_MIN ? 1.0f : w);
         p->iw[i] = iw;
     }
@@ -139,6 +143,8 @@ static bool append(const struct pe_pass *pass, struct pe_chunk *c,
         w[PE_V_Y].i = p.y[i];
         w[PE_V_Z].f = p.z[i];
         w[PE_V_IW].f = p.iw[i];
+        w[PE_V_RX].f = p.rx[i];
+        w[PE_V_RY].f = p.ry[i];
         for (uint32_t k = 0; k < prog->n_vary; k++)
             w[PE_V_VARY + k].f = prog->vary[k] == HL_PE_ID
                                  ? id : g->at[i].vary[k];

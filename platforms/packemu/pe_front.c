@@ -99,6 +99,8 @@ static void keep_run(struct pe_front *f, const struct pe_program *p,
         o[PE_V_Y].i = f->p.y[i];
         o[PE_V_Z].f = f->p.z[i];
         o[PE_V_IW].f = f->p.iw[i];
+        o[PE_V_RX].f = f->p.rx[i];
+        o[PE_V_RY].f = f->p.ry[i];
         for (uint32_t k = 0; k < p->n_vary; k++)
             o[PE_V_VARY + k].f = f->v.vary[p->vary[k]][i];
         f->out[at + i] = (uint8_t)f->p.out[i];

@@ -27,7 +27,8 @@ enum {
 
 /* A vertex is words: position, then the program's varyings in its order. */
 union pe_word { int32_t i; uint32_t u; float f; };
-enum { PE_V_X, PE_V_Y, PE_V_Z, PE_V_IW, PE_V_VARY };
+/* RX, RY: what snapping took away, pixels. */
+enum { PE_V_X, PE_V_Y, PE_V_Z, PE_V_IW, PE_V_RX, PE_V_RY, PE_V_VARY };
 
 /* A triangle wound so that its area is positive, y down; its first vertex is
  * the provoking one. Lines have two vertices, screens none. */
@@ -66,7 +67,7 @@ enum {                       /* outside which plane                          */
 };
 struct pe_projected {
     int32_t x[PE_RUN], y[PE_RUN];
-    float z[PE_RUN], iw[PE_RUN];
+    float z[PE_RUN], iw[PE_RUN], rx[PE_RUN], ry[PE_RUN];
     int32_t out[PE_RUN];     /* PE_OUT_*                                     */
 };
 
@@ -95,7 +96,7 @@ struct pe_tri {
     double x, y;             /* the anchor from vertex 0, pixels             */
     int32_t ax, ay;          /* the anchor, pixels of the bin                */
     float z, zx, zy;         /* depth                                        */
-    bool back;
+    bool back, snapped;      /* snapped: planes through snapped vertices     */
 };
 struct pe_plane { float at, x, y; };
 

@@ -131,16 +131,40 @@ static bool cover(struct spans *s, const union pe_word *const v[3],
 
 /* ---- planes -------------------------------------------------------------- */
 
-/* In double, whose products of these numbers are all but exact: slivers keep
- * their slopes. */
+/* From vertex 0 to vertex i along one axis, pixels, as snapped. */
+static double side(const union pe_word *const v[3], int i, int word)
+{
+    return (v[i][word].i - v[0][word].i) * (1.0 / PE_SUB);
+}
+
+/* What the snapping of both ends took from it. */
+static double rest(const union pe_word *const v[3], int i, int word)
+{
+    return (double)v[i][word].f - (double)v[0][word].f;
+}
+
+/* Planes through the vertices as they were, coverage by the snapped ones, so
+ * that what is interpolated is not shifted by up to 1/512 of a pixel. A sliver
+ * to whose area snapping did much has planes through the snapped vertices:
+ * its own might be arbitrarily steep. In double, whose products of these
+ * numbers are all but exact. */
 static void set_slopes(struct pe_tri *t, const union pe_word *const v[3])
 {
-    const double px = 1.0 / PE_SUB;
-    double x1 = (v[1][PE_V_X].i - v[0][PE_V_X].i) * px;
-    double y1 = (v[1][PE_V_Y].i - v[0][PE_V_Y].i) * px;
-    double x2 = (v[2][PE_V_X].i - v[0][PE_V_X].i) * px;
-    double y2 = (v[2][PE_V_Y].i - v[0][PE_V_Y].i) * px;
-    double inv = 1.0 / (x1 * y2 - x2 * y1);
+    double x1 = side(v, 1, PE_V_X), y1 = side(v, 1, PE_V_Y);
+    double x2 = side(v, 2, PE_V_X), y2 = side(v, 2, PE_V_Y);
+    double snapped = x1 * y2 - x2 * y1;
+    double u1 = x1 + rest(v, 1, PE_V_RX), w1 = y1 + rest(v, 1, PE_V_RY);
+    double u2 = x2 + rest(v, 2, PE_V_RX), w2 = y2 + rest(v, 2, PE_V_RY);
+    double area = u1 * w2 - u2 * w1;
+    t->snapped = !(area > 0.5 * snapped && area < 2.0 * snapped);
+    if (!t->snapped) {
+        x1 = u1;
+        y1 = w1;
+        x2 = u2;
+        y2 = w2;
+        snapped = area;
+    }
+    double inv = 1.0 / snapped;
     t->c1x = y2 * inv;
     t->c2x = -y1 * inv;
     t->c1y = -x2 * inv;
@@ -167,6 +191,10 @@ static void set_anchor(struct pe_tri *t, const union pe_word *const v[3],
     t->ay = low_pixel(v, PE_V_Y, bin->y);
     t->x = (double)(bin->x + t->ax) - v[0][PE_V_X].i * px;
     t->y = (double)(bin->y + t->ay) - v[0][PE_V_Y].i * px;
+    if (!t->snapped) {
+        t->x -= (double)v[0][PE_V_RX].f;
+        t->y -= (double)v[0][PE_V_RY].f;
+    }
     t->back = back;
     double z0 = (double)v[0][PE_V_Z].f;
     double d1 = (double)v[1][PE_V_Z].f - z0, d2 = (double)v[2][PE_V_Z].f - z0;
@@ -322,6 +350,7 @@ static void line_slopes(struct pe_tri *t, const union pe_word *const v[3])
     t->c1x = steep || x == 0 ? 0 : 1 / x;
     t->c1y = steep ? 1 / y : 0;
     t->c2x = t->c2y = 0;
+    t->snapped = true;
 }
 
 /* ---- records ------------------------------------------------------------- */
