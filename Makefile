@@ -4,6 +4,7 @@
 #            make check        include arrows, undefined symbols, headers alone
 #            make packemu      the software device and a program that draws with
 #                              it: a C99 compiler, libc, libm and threads alone
+#            make docs         measured tables of docs/*.md made anew
 #            make fuzz         FUZZ_SECONDS of random plans and passes (clang)
 # config=debug|release|sanitize|coverage
 config ?= release
@@ -67,7 +68,7 @@ TOOL_LIBS := $(foreach x,cli host reference list conform vulkan gl packemu profi
   $(call lib,halflight)
 PACKEMU_LIBS := $(call lib,halflight-conform) $(call lib,halflight-packemu) $(call lib,halflight-profiles) $(call lib,halflight)
 
-.PHONY: all libs tool packemu plain-tests run test tests check deps clean bench fuzz fuzzers
+.PHONY: all libs tool packemu plain-tests run test tests check deps clean bench fuzz fuzzers docs
 all: tool libs
 libs: $(LIBS)
 tool: $(B)/halflight
@@ -140,7 +141,7 @@ $(filter-out $(B)/obj/tests/fuzz_%,$(call objs,tests/*.c)): | $(TEST_STAGES)
 $(B)/tests/embed: $(B)/obj/tests/embed.o $(LIBS)
 	@mkdir -p $(@D)
 	@echo "  LINK $@"
-	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $< $(call lib,halflight-vulkan) $(call lib,halflight) $(VULKAN_LIBS) -lm
+	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $< $(call lib,halflight-vulkan) $(call lib,halflight-packemu) $(call lib,halflight) $(VULKAN_LIBS) -pthread -lm
 
 # Tests of core, hal and the software device for machines that have a C library
 # and nothing else, with tests/minimal for cmocka; less those that an emulated
@@ -189,6 +190,11 @@ check: all
 bench: all $(B)/tests/bench_light
 	@sh tests/bench.sh $(B)/halflight fig8
 	@$(B)/tests/bench_light
+docs: tool $(B)/docs-tables
+	@sh docs/make-tables.sh $(B)/halflight $(B)/docs-tables
+$(B)/docs-tables: $(B)/obj/docs/tables.o
+	@echo "  LINK $@"
+	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ -lcjson
 clean:
 	rm -rf build
 

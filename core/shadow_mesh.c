@@ -79,7 +79,8 @@ static enum hl_result take_face(struct work *work, struct hl_shadow_mesh *out,
         out->stats.n_out_of_range++;
         return HL_OK;
     }
-    if (!hl_mesh_finite(p[0], 9)) {
+    if (!hl_mesh_finite(p[0], 3) || !hl_mesh_finite(p[1], 3) ||
+        !hl_mesh_finite(p[2], 3)) {
         out->stats.n_non_finite++;
         return HL_OK;
     }

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "platforms/platforms.h"
+#include "platforms/profiles/hl_profiles.h"
 #include "tests/check.h"
 
 /* ---- devices ---------------------------------------------------------- */
@@ -53,6 +54,18 @@ bool ck_open(struct ck_machine *m, const char *backend, const void *native)
     if (r != HL_OK && r != HL_ERR_NO_DEVICE)
         fail_msg("%s: %s: %s", backend, hl_result_name(r), m->last);
     return r == HL_OK;
+}
+
+void ck_open_as(struct ck_machine *m, const char *backend,
+                const char *profile)
+{
+    memset(m, 0, sizeof *m);
+    m->backend = hl_platform_find(backend);
+    struct hl_device_desc d = ck_desc(m);
+    d.profile = hl_profile_find(profile);
+    assert_non_null(d.profile);
+    if (hl_device_open(&m->device, m->backend, &d) != HL_OK)
+        fail_msg("%s as %s: %s", backend, profile, m->last);
 }
 
 void ck_close(struct ck_machine *m)

@@ -32,6 +32,9 @@ struct hl_device_desc ck_desc(struct ck_machine *m);
 /* Open `backend` ("null", "vulkan"); native as in hl_device_desc. False: no
  * such device here. Any other failure fails the test. */
 bool ck_open(struct ck_machine *m, const char *backend, const void *native);
+/* By the rules of a console, "ps3"; there must be such a device. */
+void ck_open_as(struct ck_machine *m, const char *backend,
+                const char *profile);
 /* Close; fail on memory left and on validation errors. */
 void ck_close(struct ck_machine *m);
 

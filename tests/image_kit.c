@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include "platforms/cli/readback.h"
 #include "platforms/reference/reference.h"
 #include "tests/image_kit.h"
 
@@ -63,13 +64,19 @@ void ik_end(struct ik_stage *s)
 static struct hlh_picture take(struct hl_device *d, hl_tex tex)
 {
     struct hlh_picture p = { .linear = true };
-    float *rgba = ck_read(d, tex, &p.width, &p.height);
+    struct hlc_texels t;
+    assert_int_equal(hlc_texels_read(&t, d, tex), HL_OK);
+    p.width = t.width;
+    p.height = t.height;
     size_t n = (size_t)p.width * p.height;
     p.rgb = malloc(n * 12);
     assert_non_null(p.rgb);
-    for (size_t i = 0; i < n * 3; i++)
-        p.rgb[i] = rgba[i / 3 * 4 + i % 3];
-    free(rgba);
+    for (size_t i = 0; i < n; i++) {
+        float v[4];
+        hlc_texel(v, &t, i);
+        memcpy(p.rgb + i * 3, v, 12);
+    }
+    hlc_texels_free(&t);
     return p;
 }
 

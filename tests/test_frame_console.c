@@ -4,9 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include "hal/backend.h"
 #include "platforms/cli/readback.h"
-#include "platforms/platforms.h"
-#include "platforms/profiles/hl_profiles.h"
 #include "tests/frame_kit.h"
 #include "tests/stage_kernels.h"
 
@@ -18,19 +17,6 @@ static const char own_glsl[] = {
 };
 
 enum { N = FK_W * FK_H };
-
-/* ---- machines ----------------------------------------------------------- */
-
-static void open_as(struct ck_machine *m, const char *backend,
-                    const char *profile)
-{
-    memset(m, 0, sizeof *m);
-    m->backend = hl_platform_find(backend);
-    struct hl_device_desc d = ck_desc(m);
-    d.profile = hl_profile_find(profile);
-    assert_non_null(d.profile);
-    assert_int_equal(hl_device_open(&m->device, m->backend, &d), HL_OK);
-}
 
 /* What one profile makes of a scene. */
 struct look {
@@ -75,7 +61,7 @@ static void look_at(struct look *l, const char *backend, const char *profile,
     struct fk_run run;
     uint64_t seed = 5;
     uint32_t w, h;
-    open_as(&m, backend, profile);
+    ck_open_as(&m, backend, profile);
     fk_begin(&s, &m);
     fk_room(&s, 40, &seed);
     s.needs.light_width = 100;
@@ -191,7 +177,7 @@ static void background_is_packed_alike(void **state)
     for (int i = 0; i < 4; i++) {
         struct ck_machine m;
         struct fk_run run;
-        open_as(&m, backend, profiles[i]);
+        ck_open_as(&m, backend, profiles[i]);
         fk_begin(&s, &m);
         fk_prepare(&run, &s, HL_PIPELINE_INFERRED);
         run.desc.n_surfaces = FK_BLENDED;

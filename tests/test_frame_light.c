@@ -380,11 +380,12 @@ static void thousands_of_lights_agree(void **state)
 {
     enum { MANY = 3000 };
     struct fk_scene s;
+    struct ck_machine *m = ck_machine(state);
     uint64_t seed = mk_seed();
     struct hl_light *lights = calloc(MANY, sizeof *lights);
     float *base = NULL;
     assert_non_null(lights);
-    fk_begin(&s, ck_machine(state));
+    fk_begin(&s, m);
     fk_room(&s, 0, &seed);
     for (int i = 0; i < MANY; i++) {
         for (int c = 0; c < 3; c++) {

@@ -373,9 +373,10 @@ static void long_passes_draw_the_same_picture(void **state)
 {
     enum { NX = 100, NY = 50 };
     struct fk_scene s;
+    struct ck_machine *m = ck_machine(state);
     struct hl_item *items = malloc(NX * NY * sizeof *items);
     assert_non_null(items);
-    fk_begin(&s, ck_machine(state));
+    fk_begin(&s, m);
     fk_light(&s, 1, 1, 3, 12);
     fk_light(&s, -4, 0, 2, 12);
     struct hl_item *one = fk_add(&s, FK_QUAD, FK_PLAIN, 0, 0, 0, 1);

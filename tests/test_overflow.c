@@ -4,6 +4,7 @@
  * plan cannot serve. */
 #include <string.h>
 #include "tests/frame_kit.h"
+#include "tests/stage_kernels.h"
 
 /* Uniform data runs out while a pass of more draws than the scratch holds is
  * being sent: refused, and nothing is written past the scratch (seen by
@@ -70,7 +71,8 @@ static void own_materials_need_inferred_light(void **state)
 {
     static const uint32_t words[4];
     const struct hl_code code = { .spirv = words,
-                                  .spirv_bytes = sizeof words };
+                                  .spirv_bytes = sizeof words,
+                                  .kernel = own_taps_kernel() };
     const enum hl_pipeline pipelines[] = { HL_PIPELINE_FORWARD,
                                            HL_PIPELINE_FORWARD_MULTIPASS,
                                            HL_PIPELINE_INFERRED };
@@ -93,8 +95,11 @@ int main(void)
         CK_ON("null", data_runs_out_in_a_split_pass),
         CK_ON("vulkan", data_runs_out_in_a_split_pass),
         CK_ON("packemu", data_runs_out_in_a_split_pass),
+        CK_ON("gl", data_runs_out_in_a_split_pass),
         CK_ON("null", own_materials_need_inferred_light),
+        CK_ON("packemu", own_materials_need_inferred_light),
         CK_ON("null", no_fixed_range_for_inverse_square),
+        CK_ON("packemu", no_fixed_range_for_inverse_square),
     };
     return cmocka_run_group_tests_name("overflow", tests, NULL, NULL);
 }

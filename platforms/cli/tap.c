@@ -54,5 +54,8 @@ int hlc_tap_run(const struct hl_conform_desc *desc, FILE *out)
     fprintf(out, "1..%u\n# %u passed, %u failed, %u skipped; %llu cases\n",
             t.n, counts.passed, counts.failed, counts.skipped,
             (unsigned long long)counts.cases);
+    if (desc->mutant && counts.failed == 0)
+        fprintf(out, "# %s spoils nothing that is used here\n",
+                desc->mutant);
     return counts.failed ? HLC_FAILED : HLC_DONE;
 }
