@@ -6,9 +6,11 @@
 
 #define NOBODY UINT32_MAX
 /* The search around one object of a group that is too large for a whole one:
- * with 16 objects most are proven in 64 steps, and measured scenes change less
- * from frame to frame than with 12 or 24. */
-enum { BALL = 16, BALL_STEPS = 64, REPAIR_STEPS = 16 /* an object */ };
+ * of 16 objects most are proven in 64 steps, and measured scenes change less
+ * with 16 than with 12 or 24. With more patterns an object has more neighbours
+ * before it finds none free. */
+enum { BALL = 13 /* + patterns */, BALL_STEPS = 64,
+       REPAIR_STEPS = 16 /* an object */ };
 
 /* ---- a first assignment ---------------------------------------------- */
 
@@ -193,12 +195,13 @@ static bool solve(struct hl_stipple *s, const uint32_t *ranks, uint32_t n,
 /* v and the objects nearest to it by overlaps, ascending. */
 static uint32_t ball(struct hl_stipple *s, uint32_t v, uint32_t *out)
 {
-    uint32_t n = 1;
+    uint32_t n = 1, most = BALL + s->patterns;
+    most = most < HL_STIPPLE_EXACT ? most : HL_STIPPLE_EXACT;
     out[0] = v;
     s->place[v] = 0;
     for (uint32_t i = 0; i < n; i++) {
         uint32_t from = s->first[out[i]], to = s->first[out[i] + 1];
-        for (uint32_t e = from; e < to && n < BALL; e++) {
+        for (uint32_t e = from; e < to && n < most; e++) {
             uint32_t u = s->to[e] & HL_STIPPLE_RANK;
             if (!hl_stipple_joins(s, v, s->to[e]) || s->place[u] != NOBODY)
                 continue;
@@ -220,7 +223,7 @@ static uint32_t ball(struct hl_stipple *s, uint32_t v, uint32_t *out)
  * is found in the next frame. */
 static void repair(struct hl_stipple *s, uint32_t from, uint32_t to)
 {
-    uint32_t ranks[BALL], most = REPAIR_STEPS * (to - from);
+    uint32_t ranks[HL_STIPPLE_EXACT], most = REPAIR_STEPS * (to - from);
     uint32_t stop = s->steps > most ? s->steps - most : 0;
     bool any = true;
     while (any) {

@@ -29,7 +29,7 @@ arrows() {
     verdict "$1"
 }
 
-core_public='core/(halflight|needs|plan|scene|frame|mesh|ids)\.h'
+core_public='core/(halflight|needs|plan|scene|frame|mesh|ids|stipple)\.h'
 hal_public='hal/(hal|caps|backend|formats|profile)\.'
 arrows includes_shaders shaders 'shaders/'
 arrows includes_shared shaders/shared 'shaders/shared/'
@@ -93,7 +93,7 @@ esac
 
 # Every public header alone, as C99 and as C++.
 for h in hal/caps.h hal/hal.h hal/backend.h hal/text.h core/needs.h core/plan.h core/scene.h core/frame.h \
-    core/mesh.h core/ids.h core/halflight.h platforms/platforms.h platforms/null/hl_null.h \
+    core/mesh.h core/ids.h core/stipple.h core/halflight.h platforms/platforms.h platforms/null/hl_null.h \
     platforms/vulkan/hl_vulkan.h platforms/gl/hl_gl.h platforms/packemu/hl_packemu.h \
     platforms/profiles/hl_profiles.h platforms/conform/conform.h; do
     echo "#include \"$h\"" > "$tmp/h.c"

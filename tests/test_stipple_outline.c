@@ -184,7 +184,8 @@ static void outlines_are_tight(void **state)
     assert_true(n > 30);
 }
 
-static const float unit[16] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 };
+static const float unit[16] = { 1, 0, 0, 0, 0, 1, 0, 0,
+                                0, 0, 1, 0, 0, 0, 0, 1 };
 
 static void known_boxes(void **state)
 {
