@@ -5,7 +5,8 @@
 #            make packemu      the software device and a program that draws with
 #                              it: a C99 compiler, libc, libm and threads alone
 #            make docs         measured tables of docs/*.md made anew
-#            make fuzz         FUZZ_SECONDS of random plans and passes (clang)
+#            make fuzz         FUZZ_SECONDS of random plans and passes (clang and
+#                              its libFuzzer, Debian's libclang-rt-14-dev)
 # config=debug|release|sanitize|coverage
 config ?= release
 ifeq ($(origin CC),default)

@@ -10,4 +10,5 @@
 #include "core/frame.h"  /* runs a plan                                      */
 #include "core/mesh.h"   /* normal groups, tangents                          */
 #include "core/ids.h"    /* region ids                                       */
+#include "core/stipple.h" /* patterns of translucent objects                 */
 #endif

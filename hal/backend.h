@@ -92,5 +92,8 @@ void *hl_bk_texture(struct hl_device *, const struct hl_backend *backend,
 /* text is joined from up to three parts (NULL ends). */
 void hl_bk_log(struct hl_device *, enum hl_log_level, enum hl_log_id,
                const char *a, const char *b, const char *c);
+/* Does a device's name have that part, ASCII letters of either case alike?
+ * hl_device_desc.device by name. */
+bool hl_bk_name_has(const char *name, const char *part);
 void hl_bk_validation_error(struct hl_device *, const char *text);
 #endif

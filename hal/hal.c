@@ -59,6 +59,23 @@ enum hl_result hl_refuse_number(struct hl_device *d, enum hl_result result,
     return hl_refuse(d, result, id, what, line);
 }
 
+static char lower(char c)
+{
+    return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
+}
+
+bool hl_bk_name_has(const char *name, const char *part)
+{
+    for (; *name; name++) {
+        size_t i = 0;
+        while (part[i] && lower(name[i]) == lower(part[i]))
+            i++;
+        if (!part[i])
+            return true;
+    }
+    return false;
+}
+
 void hl_bk_validation_error(struct hl_device *d, const char *text)
 {
     d->validation_errors++;

@@ -172,6 +172,13 @@ enum cf_depth_id {
     CF_DEPTH_HALF_METRES, CF_DEPTH_UNORM8, CF_DEPTHS
 };
 
+/* What most groups draw with, `side` texels square: the input, a texture of
+ * the store, and an RGBA32_FLOAT output. Handles are {0} or live before;
+ * cf_drop_all also after a failure. */
+bool cf_make_all(struct cf *, const struct cf_store *, uint32_t side,
+                 hl_tex *in, hl_tex *stored, hl_tex *out);
+void cf_drop_all(struct cf *, hl_tex *in, hl_tex *stored, hl_tex *out);
+
 /* ---- groups -------------------------------------------------------------- */
 
 const char *cf_normal(struct cf *, const struct cf_group *);

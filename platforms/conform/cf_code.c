@@ -16,18 +16,12 @@ static bool begin(struct bench *b, struct cf *cf)
 {
     b->cf = cf;
     b->in.id = b->stored.id = b->out.id = 0;
-    return cf_input(cf, &b->in, SIDE, SIDE) &&
-           cf_tex(cf, &b->stored, b->store.format, b->store.sample_as,
-                  &b->store.console, SIDE, SIDE) &&
-           cf_tex(cf, &b->out, HL_FORMAT_RGBA32_FLOAT, HL_FORMAT_NONE, NULL,
-                  SIDE, SIDE);
+    return cf_make_all(cf, &b->store, SIDE, &b->in, &b->stored, &b->out);
 }
 
 static void end(struct bench *b)
 {
-    cf_drop(b->cf, &b->in);
-    cf_drop(b->cf, &b->stored);
-    cf_drop(b->cf, &b->out);
+    cf_drop_all(b->cf, &b->in, &b->stored, &b->out);
 }
 
 static double apart(int32_t a, int32_t b) { return fabs((double)a - b); }

@@ -122,15 +122,9 @@ const char *cf_depth(struct cf *cf, const struct cf_group *g)
     const char *why = choose(&b);
     if (why)
         return why;
-    if (cf_input(cf, &b.in, SIDE, SIDE) &&
-        cf_tex(cf, &b.stored, b.store.format, b.store.sample_as,
-               &b.store.console, SIDE, SIDE) &&
-        cf_tex(cf, &b.out, HL_FORMAT_RGBA32_FLOAT, HL_FORMAT_NONE, NULL, SIDE,
-               SIDE))
+    if (cf_make_all(cf, &b.store, SIDE, &b.in, &b.stored, &b.out))
         for (int k = 0; k < FARS; k++)
             one(&b, g, k);
-    cf_drop(cf, &b.in);
-    cf_drop(cf, &b.stored);
-    cf_drop(cf, &b.out);
+    cf_drop_all(cf, &b.in, &b.stored, &b.out);
     return NULL;
 }

@@ -22,20 +22,14 @@ static bool begin(struct bench *b)
     memset(cf->in, 0, CF_PIXELS * sizeof *cf->in);
     b->far = 1000;
     b->q = b->far / b->store.steps;
-    return cf_input(cf, &b->in, SIDE, SIDE) &&
-           cf_input(cf, &b->depth, SIDE, SIDE) &&
-           cf_tex(cf, &b->stored, b->store.format, b->store.sample_as,
-                  &b->store.console, SIDE, SIDE) &&
-           cf_tex(cf, &b->out, HL_FORMAT_RGBA32_FLOAT, HL_FORMAT_NONE, NULL,
-                  SIDE, SIDE);
+    return cf_make_all(cf, &b->store, SIDE, &b->in, &b->stored, &b->out) &&
+           cf_input(cf, &b->depth, SIDE, SIDE);
 }
 
 static void end(struct bench *b)
 {
-    cf_drop(b->cf, &b->in);
     cf_drop(b->cf, &b->depth);
-    cf_drop(b->cf, &b->stored);
-    cf_drop(b->cf, &b->out);
+    cf_drop_all(b->cf, &b->in, &b->stored, &b->out);
 }
 
 /* cf->in: z, id, slope, tap's z. Stores the taps, filters; tau 0: by slope. */

@@ -86,20 +86,13 @@ static double angle(const double a[3], const float b[4])
 static bool begin(struct bench *b)
 {
     struct cf *cf = b->cf;
-    uint32_t n = b->side;
     memset(cf->in, 0, CF_PIXELS * sizeof *cf->in);
-    return cf_input(cf, &b->in, n, n) &&
-           cf_tex(cf, &b->stored, b->store.format, b->store.sample_as,
-                  &b->store.console, n, n) &&
-           cf_tex(cf, &b->out, HL_FORMAT_RGBA32_FLOAT, HL_FORMAT_NONE, NULL,
-                  n, n);
+    return cf_make_all(cf, &b->store, b->side, &b->in, &b->stored, &b->out);
 }
 
 static void end(struct bench *b)
 {
-    cf_drop(b->cf, &b->in);
-    cf_drop(b->cf, &b->stored);
-    cf_drop(b->cf, &b->out);
+    cf_drop_all(b->cf, &b->in, &b->stored, &b->out);
 }
 
 /* ---- angles ------------------------------------------------------------- */

@@ -150,3 +150,20 @@ bool cf_truncates(struct cf *cf, enum hl_format format)
     cf_drop(cf, &t);
     return code == 0x3c00;
 }
+
+bool cf_make_all(struct cf *cf, const struct cf_store *store, uint32_t side,
+                 hl_tex *in, hl_tex *stored, hl_tex *out)
+{
+    return cf_input(cf, in, side, side) &&
+           cf_tex(cf, stored, store->format, store->sample_as,
+                  &store->console, side, side) &&
+           cf_tex(cf, out, HL_FORMAT_RGBA32_FLOAT, HL_FORMAT_NONE, NULL, side,
+                  side);
+}
+
+void cf_drop_all(struct cf *cf, hl_tex *in, hl_tex *stored, hl_tex *out)
+{
+    cf_drop(cf, in);
+    cf_drop(cf, stored);
+    cf_drop(cf, out);
+}

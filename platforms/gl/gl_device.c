@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Zlib */
 /* Choice of a context, open and close, buffers. */
-#include <ctype.h>
 #include <dlfcn.h>
 #include <string.h>
 #include "platforms/gl/gl.h"
@@ -185,20 +184,6 @@ static enum hl_result list(const struct hl_hooks *hooks,
     return *n ? HL_OK : HL_ERR_NO_DEVICE;
 }
 
-static bool contains(const char *text, const char *part)
-{
-    size_t i;
-    for (; *text; text++) {
-        for (i = 0; part[i]; i++)
-            if (tolower((unsigned char)text[i]) !=
-                tolower((unsigned char)part[i]))
-                break;
-        if (!part[i])
-            return true;
-    }
-    return false;
-}
-
 /* Is the n-th context the one that is wanted? Digits that no index reaches
  * may be a name's. */
 static bool wanted(const char *want, uint32_t n, const char *name,
@@ -208,7 +193,7 @@ static bool wanted(const char *want, uint32_t n, const char *name,
     if (!want || !*want)
         return true;
     if (by_name)
-        return contains(name, want);
+        return hl_bk_name_has(name, want);
     for (; *want >= '0' && *want <= '9' && index <= MAX_CONTEXTS; want++)
         index = index * 10 + (uint32_t)(*want - '0');
     return !*want && index == n;

@@ -165,24 +165,13 @@ static bool tiles_fit(const struct hl_profile *p)
             p->edram_tile_width > 0 && p->edram_tile_height > 0);
 }
 
-/* Is the only device wanted: no name, index 0, or part of "packemu" whatever
- * its letters' case? */
+/* Is the only device wanted: index 0, or by a part of its name? */
 static bool wanted(const char *want)
 {
-    const char *name = "packemu";
-    size_t i = 0;
-    while (want && want[i] == '0')
-        i++;
-    if (!want || !want[i])
-        return true;
-    for (; *name; name++) {
-        for (i = 0; want[i] && name[i]; i++)
-            if (want[i] != name[i] && want[i] != name[i] - 'a' + 'A')
-                break;
-        if (!want[i])
-            return true;
-    }
-    return false;
+    const char *rest = want ? want : "";
+    while (*rest == '0')
+        rest++;
+    return !*rest || hl_bk_name_has("packemu", want);
 }
 
 static enum hl_result pe_open(void *state, struct hl_device *device,

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Zlib */
 /* Instance, choice of a device, open and close. */
-#include <ctype.h>
 #include <string.h>
 #include "platforms/vulkan/vk.h"
 
@@ -209,20 +208,6 @@ static enum hl_result list(const struct hl_hooks *hooks,
     return *n ? HL_OK : HL_ERR_NO_DEVICE;
 }
 
-static bool contains(const char *text, const char *part)
-{
-    size_t i;
-    for (; *text; text++) {
-        for (i = 0; part[i]; i++)
-            if (tolower((unsigned char)text[i]) !=
-                tolower((unsigned char)part[i]))
-                break;
-        if (!part[i])
-            return true;
-    }
-    return false;
-}
-
 /* An index, or part of a name: "4090" is a name where there are fewer. */
 static uint32_t pick(const char *want, const VkPhysicalDevice *found,
                      uint32_t n)
@@ -238,7 +223,7 @@ static uint32_t pick(const char *want, const VkPhysicalDevice *found,
         return index;
     for (uint32_t i = 0; i < n; i++) {
         hlvk_describe(found[i], &info);
-        if (contains(info.name, want))
+        if (hl_bk_name_has(info.name, want))
             return i;
     }
     return n;
