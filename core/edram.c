@@ -20,8 +20,7 @@ struct placing {
 
 static bool binds(const struct hl_plan_pass *s, enum hl_role role)
 {
-    return s->depth == role || s->color[0] == role || s->color[1] == role ||
-           s->color[2] == role;
+    return s->depth == role || hl_pass_colors(s, role);
 }
 
 static bool of_light_size(enum hl_role r)

@@ -78,7 +78,7 @@ struct hl_draw *hl_draw_begin(struct hl_renderer *r)
     return d;
 }
 
-static void bind_uniform(struct hl_renderer *r, struct hl_draw *d, int slot,
+void hl_bind_uniform(struct hl_renderer *r, struct hl_draw *d, int slot,
                          uint32_t offset, uint32_t bytes)
 {
     d->uniform[slot].buf = r->uniform[r->frame];
@@ -86,10 +86,16 @@ static void bind_uniform(struct hl_renderer *r, struct hl_draw *d, int slot,
     d->uniform[slot].bytes = bytes;
 }
 
-static void bind_list(struct hl_renderer *r, struct hl_draw *d)
+void hl_bind_list(struct hl_renderer *r, struct hl_draw *d)
 {
     d->storage[HL_SLOT_LIST].buf = r->list[r->frame];
     d->storage[HL_SLOT_LIST].bytes = r->lists.size;
+}
+
+static bool is_gbuffer(int kind)
+{
+    return kind == PROG_GBUFFER || kind == PROG_STIPPLE_GBUFFER ||
+           kind == PROG_DECAL_GBUFFER;
 }
 
 struct hl_draw *hl_draw_mesh(struct hl_renderer *r, const struct hl_frame *f,
@@ -105,14 +111,18 @@ struct hl_draw *hl_draw_mesh(struct hl_renderer *r, const struct hl_frame *f,
     d->first = it->first;
     d->count = it->count;
     d->base_vertex = it->base_vertex;
-    bind_uniform(r, d, HL_SLOT_FRAME, r->frame_offset,
+    hl_bind_uniform(r, d, HL_SLOT_FRAME, r->frame_offset,
                  sizeof(struct hl_frame_block));
-    bind_uniform(r, d, HL_SLOT_OBJECT, v->object,
+    hl_bind_uniform(r, d, HL_SLOT_OBJECT, v->object,
                  sizeof(struct hl_object_block));
-    bind_uniform(r, d, HL_SLOT_MATERIAL, v->material, v->material_bytes);
+    hl_bind_uniform(r, d, HL_SLOT_MATERIAL, v->material, v->material_bytes);
     if (kind == PROG_BLENDED)
-        bind_list(r, d);
-    bool lit = kind == PROG_MATERIAL || kind == PROG_REJECT;
+        hl_bind_list(r, d);
+    if (r->plan.motion && is_gbuffer(kind))
+        hl_bind_uniform(r, d, HL_SLOT_MOTION, v->motion,
+                        sizeof(struct hl_motion_block));
+    bool lit = kind == PROG_MATERIAL || kind == PROG_REJECT ||
+               kind == PROG_STIPPLE_MATERIAL || kind == PROG_DECAL_MATERIAL;
     d->textures = r->textures[visible][lit];
     if (lit || r->surfaces[it->surface].textures)
         d->n_textures = HL_TEX_MESH_COUNT;
@@ -121,301 +131,7 @@ struct hl_draw *hl_draw_mesh(struct hl_renderer *r, const struct hl_frame *f,
 
 void hl_draw_lights(struct hl_renderer *r, struct hl_draw *d, uint32_t offset)
 {
-    bind_uniform(r, d, HL_SLOT_LIGHTS, offset, HL_LIGHTS_BYTES);
-}
-
-/* Lights `refs` (of spheres), padded with black ones to `size`. */
-static uint32_t write_batch(struct hl_renderer *r, const struct hl_frame *f,
-                            const uint32_t *refs, uint32_t n, uint32_t size)
-{
-    hl_vec4 data[HL_BATCH_MAX * HL_LIGHT_VEC4S];
-    uint32_t at = 0;
-    uint32_t stride = r->plan.kinds ? HL_LIGHT_VEC4S : HL_POINT_VEC4S;
-    for (uint32_t i = 0; i < n; i++) {
-        const struct hl_lit_sphere *s = &r->spheres[refs[i]];
-        at += hl_light_write(data + at, &f->lights[s->light], s,
-                             f->camera.view, r->plan.kinds);
-    }
-    memset(data + at, 0, (size * stride - at) * sizeof *data);
-    r->stats.light_refs += n;
-    return hl_arena_put(&r->arena, data, size * stride * 16);
-}
-
-/* As one block; when counting, only the number of lights. HL_LIGHTS_BYTES
- * are reserved, so that the range a draw binds never ends past the buffer. */
-static uint32_t put_batch(struct hl_renderer *r, const struct hl_frame *f,
-                          const uint32_t *refs, uint32_t n, uint32_t size)
-{
-    hl_vec4 count = { (float)n / r->count_steps, 0, 0, 0 };
-    uint32_t at = r->counting ? hl_arena_put(&r->arena, &count, sizeof count)
-                              : write_batch(r, f, refs, n, size);
-    if (at + HL_LIGHTS_BYTES > r->arena.size)
-        r->arena.full = true;
-    return at;
-}
-
-/* ---- light pass --------------------------------------------------------- */
-
-static struct hl_draw *draw_screen(struct hl_renderer *r, hl_prog prog,
-                                   const struct hl_rect *rect)
-{
-    struct hl_draw *d = hl_draw_begin(r);
-    d->prog = prog;
-    d->count = 3;
-    d->scissor = *rect;
-    d->textures = r->light_textures;
-    d->n_textures = 3;
-    bind_uniform(r, d, HL_SLOT_FRAME, r->frame_offset,
-                 sizeof(struct hl_frame_block));
-    return d;
-}
-
-static void draw_batch(struct hl_renderer *r, const struct hl_frame *f,
-                       const struct hl_rect *rect, const uint32_t *refs,
-                       uint32_t n, bool add)
-{
-    uint32_t size;
-    hl_prog prog = hl_light_program(r, n, add, &size);
-    struct hl_draw *d = draw_screen(r, prog, rect);
-    hl_draw_lights(r, d, put_batch(r, f, refs, n, size));
-    r->stats.blends += add;
-}
-
-/* Lights of one draw: part `chunk` of tile t's list; 0 when there is none. */
-static uint32_t chunk_of(const struct hl_renderer *r, uint32_t t,
-                         uint32_t chunk, uint32_t *at)
-{
-    uint32_t first = r->tile_first[t], n = r->tile_first[t + 1] - first;
-    uint32_t done = chunk * r->plan.batch;
-    *at = first + done;
-    if (done >= n)
-        return 0;
-    return n - done < r->plan.batch ? n - done : r->plan.batch;
-}
-
-/* The tiles whose chunk is drawn by one program: changing programs costs
- * more than a tile's draw. Returns how many draws were made. */
-static uint32_t draw_chunks(struct hl_renderer *r, const struct hl_frame *f,
-                            uint32_t chunk, uint32_t size)
-{
-    const struct hl_tile_grid *g = &r->grid;
-    uint32_t at, fits, drawn = 0;
-    for (uint32_t t = 0; t < g->nx * g->ny; t++) {
-        uint32_t n = chunk_of(r, t, chunk, &at);
-        if (n == 0)
-            continue;
-        hl_light_program(r, n, chunk > 0, &fits);
-        if (fits != size)
-            continue;
-        struct hl_rect rect = { (int32_t)(t % g->nx * g->tile),
-                                (int32_t)(t / g->nx * g->tile),
-                                (int32_t)g->tile, (int32_t)g->tile };
-        draw_batch(r, f, &rect, r->refs + at, n, chunk > 0);
-        drawn++;
-    }
-    return drawn;
-}
-
-/* The first draw of a tile writes over the cleared target without blending:
- * most tiles have no second one. */
-static void draw_tiles(struct hl_renderer *r, const struct hl_frame *f)
-{
-    uint32_t drawn = 1;
-    for (uint32_t chunk = 0; drawn > 0; chunk++) {
-        drawn = 0;
-        for (uint32_t i = 0; i < LIGHT_SIZES; i++)
-            drawn += draw_chunks(r, f, chunk, hl_light_size(&r->plan, i));
-    }
-}
-
-static void draw_lists(struct hl_renderer *r, const struct hl_frame *f)
-{
-    const struct hl_tile_grid *g = &r->grid;
-    uint32_t tiles = g->nx * g->ny;
-    hl_vec4 data[HL_LIGHT_VEC4S];
-    for (uint32_t t = 0; t < tiles; t++) {
-        r->tile_heads[t * 2] = r->lists.used / 16;
-        r->tile_heads[t * 2 + 1] = r->tile_first[t + 1] - r->tile_first[t];
-        for (uint32_t i = r->tile_first[t]; i < r->tile_first[t + 1]; i++) {
-            const struct hl_lit_sphere *s = &r->spheres[r->refs[i]];
-            uint32_t n = hl_light_write(data, &f->lights[s->light], s,
-                                        f->camera.view, r->plan.kinds);
-            hl_arena_put(&r->lists, data, n * 16);
-        }
-    }
-    r->stats.light_refs += r->tile_first[tiles];
-    if (r->result == HL_OK)
-        r->result = hl_buf_write(r->device, r->tiles[r->frame], 0,
-                                 r->tile_heads, (size_t)tiles * 8);
-    struct hl_rect all = { 0, 0, 0, 0 };
-    struct hl_draw *d = draw_screen(r, r->counting ? r->count_tiles
-                                                   : r->list_prog, &all);
-    bind_list(r, d);
-    d->storage[HL_SLOT_TILES].buf = r->tiles[r->frame];
-    d->storage[HL_SLOT_TILES].bytes = tiles * 8;
-}
-
-enum { CELLS = 8 };          /* a side: rectangles are merged by cell        */
-
-static struct hl_rect join(struct hl_rect a, struct hl_rect b)
-{
-    int32_t x1 = a.x + a.width, y1 = a.y + a.height;
-    int32_t u1 = b.x + b.width, v1 = b.y + b.height;
-    struct hl_rect c;
-    c.x = a.x < b.x ? a.x : b.x;
-    c.y = a.y < b.y ? a.y : b.y;
-    c.width = (x1 > u1 ? x1 : u1) - c.x;
-    c.height = (y1 > v1 ? y1 : v1) - c.y;
-    return c;
-}
-
-/* Boustrophedon order of cells: neighbours in the order are neighbours on
- * the screen, so a batch's union stays small. */
-static uint32_t cell_of(const struct hl_renderer *r, struct hl_rect b)
-{
-    uint32_t x = (uint32_t)(b.x + b.width / 2) * CELLS / (r->grid.w + 1);
-    uint32_t y = (uint32_t)(b.y + b.height / 2) * CELLS / (r->grid.h + 1);
-    return y * CELLS + (y & 1 ? CELLS - 1 - x : x);
-}
-
-/* K lights a draw, each draw cut to the union of its lights' rectangles. */
-static void draw_rects(struct hl_renderer *r, const struct hl_frame *f)
-{
-    uint32_t batch[HL_BATCH_MAX], n = 0;
-    struct hl_rect all = { 0, 0, 0, 0 }, b;
-    for (uint32_t c = 0; c < CELLS * CELLS; c++)
-        for (uint32_t i = 0; i < r->n_spheres; i++) {
-            if (!hl_sphere_rect(&b, &r->spheres[i], &f->camera, r->grid.w,
-                                r->grid.h) || cell_of(r, b) != c)
-                continue;
-            all = n ? join(all, b) : b;
-            batch[n++] = i;
-            if (n == r->plan.batch) {
-                draw_batch(r, f, &all, batch, n, true);
-                n = 0;
-            }
-        }
-    if (n)
-        draw_batch(r, f, &all, batch, n, true);
-}
-
-void hl_emit_light_pass(struct hl_renderer *r, const struct hl_frame *f)
-{
-    struct hl_texture_binding *t = r->light_textures;
-    memset(t, 0, sizeof r->light_textures);
-    hl_tex copy = r->target[HL_ROLE_DEPTH_COPY];
-    t[HL_TEX_DEPTH].tex = copy.id ? copy : r->target[HL_ROLE_LIGHT_DEPTH];
-    t[HL_TEX_NORMAL].tex = r->target[HL_ROLE_NORMAL];
-    t[HL_TEX_EXPONENT].tex = r->target[HL_ROLE_EXPONENT];
-    if (r->plan.light_path == HL_LIGHT_PATH_TILES)
-        draw_tiles(r, f);
-    else if (r->plan.light_path == HL_LIGHT_PATH_LISTS)
-        draw_lists(r, f);
-    else
-        draw_rects(r, f);
-}
-
-/* Tile lists, bounded by the depth that the geometry pass left where the
- * plan says so: the one place where a frame waits for the device. */
-enum hl_result hl_build_tiles(struct hl_renderer *r, const struct hl_frame *f)
-{
-    struct hl_tile_grid *g = &r->grid;
-    g->z0 = g->z1 = NULL;
-    if (r->plan.tile_depth && r->n_spheres > 0) {
-        float x, y, n = f->camera.near, z = f->camera.far;
-        enum hl_result e = hl_tex_read(r->device,
-                                       r->target[HL_ROLE_LIGHT_DEPTH],
-                                       r->depth_read,
-                                       (size_t)g->w * g->h * sizeof(float));
-        if (e != HL_OK)
-            return e;
-        x = r->plan.reversed_depth ? n * z / (z - n) : -n * z / (z - n);
-        y = r->plan.reversed_depth ? n / (z - n) : -z / (z - n);
-        hl_tiles_depth(r->tile_z0, r->tile_z1, r->depth_read, g->w, g->h,
-                       g->tile, x, y, r->plan.reversed_depth ? 0.0f : 1.0f);
-        g->z0 = r->tile_z0;
-        g->z1 = r->tile_z1;
-    }
-    uint32_t n = hl_tiles_fill(g, r->spheres, r->n_spheres, r->tile_first,
-                               r->refs, r->max_refs);
-    if (n > r->max_refs) {
-        hl_bk_log(r->device, HL_LOG_ERROR, HL_MSG_LIMIT,
-                  "hl_renderer_desc.max_lights",
-                  ": tile lists need more entries", NULL);
-        return HL_ERR_LIMIT;
-    }
-    r->stats.light_peak = hl_tiles_peak(g, r->tile_first, r->refs, r->spheres,
-                                        f->lights);
-    return HL_OK;
-}
-
-/* ---- forward ------------------------------------------------------------ */
-
-struct batcher {
-    const struct hl_frame *frame;
-    uint32_t visible, refs[HL_BATCH_MAX], n, done;
-    struct hl_rect rect;
-};
-
-static void send(struct hl_renderer *r, struct batcher *b, bool base)
-{
-    int kind = base ? PROG_BASE : PROG_MORE;
-    if (r->counting)
-        kind = base ? PROG_COUNT_BASE : PROG_COUNT_MORE;
-    struct hl_draw *d = hl_draw_mesh(r, b->frame, b->visible, kind);
-    uint32_t size = r->plan.batch ? r->plan.batch : 1;
-    hl_draw_lights(r, d, put_batch(r, b->frame, b->refs, b->n, size));
-    if (!base && r->plan.scissor)
-        d->scissor = b->rect;
-    r->stats.blends += !base;
-    b->n = 0;
-    b->done++;
-}
-
-/* Base draws of all objects first, then further lights where the depth is
- * equal: `base` says which of the two this call makes. FWD-2's base draw has
- * the first eight lights, FWD-1's has none. */
-static void object_draws(struct hl_renderer *r, const struct hl_frame *f,
-                         uint32_t visible, bool base)
-{
-    bool multipass = r->plan.pipeline == HL_PIPELINE_FORWARD_MULTIPASS;
-    struct batcher b;
-    memset(&b, 0, sizeof b);
-    b.frame = f;
-    b.visible = visible;
-    if (multipass && base) {
-        send(r, &b, true);
-        return;
-    }
-    for (uint32_t i = 0; i < r->n_spheres; i++) {
-        struct hl_lit_sphere *s = &r->spheres[i];
-        if (!hl_sphere_touches_box(s, &r->visible[visible].box))
-            continue;
-        if (r->plan.scissor && !hl_sphere_rect(&b.rect, s, &f->camera,
-                                               r->plan.width, r->plan.height))
-            continue;
-        b.refs[b.n++] = i;
-        if (b.n < r->plan.batch)
-            continue;
-        bool first = !multipass && b.done == 0;
-        if (first == base)
-            send(r, &b, base);
-        else
-            b.n = 0, b.done++;
-        if (base)
-            return;
-    }
-    bool first = !multipass && b.done == 0;
-    if (first ? base : b.n > 0 && !base)
-        send(r, &b, base);
-}
-
-void hl_emit_forward(struct hl_renderer *r, const struct hl_frame *f)
-{
-    for (uint32_t i = 0; i < r->n_opaque; i++)
-        object_draws(r, f, i, true);
-    for (uint32_t i = 0; i < r->n_opaque; i++)
-        object_draws(r, f, i, false);
+    hl_bind_uniform(r, d, HL_SLOT_LIGHTS, offset, HL_LIGHTS_BYTES);
 }
 
 /* ---- the frame ---------------------------------------------------------- */
@@ -437,9 +153,16 @@ static void geometry_pass(struct hl_renderer *r, const struct hl_frame *f)
     clear_packed(r, HL_ROLE_DSF, 1, 0);
     if (r->target[HL_ROLE_EXPONENT].id)
         hl_pass_color(r, r->target[HL_ROLE_EXPONENT], HL_LOAD_CLEAR, zero);
+    if (r->target[HL_ROLE_MOTION].id)
+        clear_packed(r, HL_ROLE_MOTION, 0.5f, 0.5f);
     hl_pass_depth(r, r->target[HL_ROLE_LIGHT_DEPTH], HL_LOAD_CLEAR, false);
     for (uint32_t i = 0; i < r->n_opaque; i++)
         hl_draw_mesh(r, f, i, PROG_GBUFFER);
+    for (uint32_t i = r->n_opaque; i < r->n_decals; i++)
+        hl_draw_mesh(r, f, i, PROG_DECAL_GBUFFER);
+    for (uint32_t i = r->n_decals; i < r->n_visible; i++)
+        if (r->visible[i].pattern != HL_STIPPLE_NONE)
+            hl_draw_mesh(r, f, i, PROG_STIPPLE_GBUFFER);
     hl_pass_end(r);
 }
 
@@ -453,7 +176,7 @@ static void depth_copy_pass(struct hl_renderer *r)
     r->light_textures[HL_TEX_DEPTH].tex = r->target[HL_ROLE_LIGHT_DEPTH];
     hl_pass_begin(r, "depth copy");
     hl_pass_color(r, r->target[HL_ROLE_DEPTH_COPY], HL_LOAD_DISCARD, NULL);
-    draw_screen(r, r->depth_copy, &all);
+    hl_draw_screen(r, r->depth_copy, &all);
     hl_pass_end(r);
 }
 
@@ -471,6 +194,12 @@ static void light_pass(struct hl_renderer *r, const struct hl_frame *f)
         hl_pass_depth(r, r->target[plan->depth], HL_LOAD_KEEP, true);
     hl_emit_light_pass(r, f);
     hl_pass_end(r);
+    if (r->n_spheres == r->n_plain)
+        return;
+    if (r->plan.shadows == HL_SHADOWS_MAPS)
+        hl_maps_shadowed(r, f);
+    else
+        hl_volumes_shadowed(r, f);
 }
 
 static void begin_color(struct hl_renderer *r, const struct hl_frame *f,
@@ -501,7 +230,10 @@ static void shading_passes(struct hl_renderer *r, const struct hl_frame *f)
         return;
     begin_color(r, f, "blended", false, true);
     for (uint32_t i = r->n_opaque; i < r->n_visible; i++) {
-        hl_draw_mesh(r, f, i, PROG_BLENDED);
+        uint8_t pattern = r->visible[i].pattern;
+        hl_draw_mesh(r, f, i, pattern == HL_STIPPLE_NONE ? PROG_BLENDED
+                              : pattern ? PROG_STIPPLE_MATERIAL
+                                        : PROG_DECAL_MATERIAL);
         r->stats.blends++;
     }
     hl_pass_end(r);

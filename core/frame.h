@@ -37,6 +37,16 @@ struct hl_frame_stats {
     uint32_t lights, lights_culled;    /* lights: those drawn                */
     uint32_t draws, blends;            /* blends: draws that blend           */
     uint32_t light_refs;               /* entries of all light lists         */
+    uint32_t stippled;                 /* translucent items with a pattern   */
+    uint32_t unstippled;               /* without: lit forward, all lights but
+                                        * no shadows                         */
+    uint32_t stipple_conflicts;        /* overlapping pairs of one pattern   */
+    uint32_t stipple_changes;          /* items with another than last frame */
+    uint32_t decals;
+    uint32_t light_volumes;            /* lights drawn through a stencil     */
+    uint32_t shadow_lights;            /* lights drawn with shadows          */
+    uint32_t shadow_casters;           /* pairs of light and caster drawn    */
+    uint32_t shadow_triangles;         /* of volumes and into maps           */
     float light_peak;                  /* bound of summed light, inferred    */
     bool light_may_clip;               /* the peak is above what the L-buffer
                                         * of the plan holds (plan.light_scale,
@@ -67,10 +77,13 @@ enum hl_inspect {
                               * texels for the inferred pipeline); not above
                               * 65,535, or 255, where nothing with more
                               * codes blends                                 */
-    HL_INSPECT_REJECTS       /* uint8 a frame pixel: rejected DSF taps + 1,
+    HL_INSPECT_REJECTS,      /* uint8 a frame pixel: rejected DSF taps + 1,
                               * 0 = background; inferred pipeline only       */
+    HL_INSPECT_STIPPLE       /* uint8 an L-buffer texel: 0 background, 1 opaque,
+                              * 1 + pattern of what is translucent; plans with
+                              * stipple only                                 */
 };
-/* Size of the picture; bytes = width * height * (4, 4, 1). */
+/* Size of the picture; bytes = width * height * (4, 4, 1, 1). */
 void hl_inspect_size(const struct hl_renderer *, enum hl_inspect,
                      uint32_t *width, uint32_t *height);
 enum hl_result hl_frame_inspect(struct hl_renderer *, const struct hl_frame *,

@@ -94,7 +94,7 @@ static enum hl_result check_item(struct hl_renderer *r,
     if (it->surface >= r->n_surfaces)
         return refuse(r, "hl_frame.items", i, "surface is not one");
     const struct hl_surface *s = &r->surfaces[it->surface];
-    if (!it->material && (!s->own_material || s->blended))
+    if (!it->material && (!s->own_material || s->blended || s->decal))
         return refuse(r, "hl_frame.items", i, "material is NULL");
     if (s->own_material && (!it->material_block || !it->material_bytes))
         return refuse(r, "hl_frame.items", i, "material_block is NULL");
@@ -204,8 +204,14 @@ void hl_gather_object(struct hl_renderer *r, const struct hl_frame *f,
                            : 1.0f;
     /* hl_exponent_encode(n), with the same bits on every machine. */
     float code = (float)hl_exact_log2((double)n) * 0.125f;
-    b.flat_ids = hl_v4(code, hl_det3(mv) < 0 ? -1.0f : 1.0f, 0, 0);
-    b.ids = hl_v4((float)it->id_base, (float)v->item, (float)v->list_first,
+    bool patterned = v->pattern && v->pattern != HL_STIPPLE_NONE;
+    b.flat_ids = hl_v4(code, hl_det3(mv) < 0 ? -1.0f : 1.0f,
+                       patterned ? (float)v->pattern : 0.0f,
+                       it->material ? (float)it->material->brdf : 0.0f);
+    /* A decal is lit as whatever it lies on: id 0 takes any. */
+    bool decal = hl_surface_class(r, v->surface) == HL_CLASS_DECAL;
+    b.ids = hl_v4(decal ? 0.0f : (float)it->id_base, (float)v->item,
+                  (float)v->list_first,
                   (float)v->list_count);
     v->object = hl_arena_put(&r->arena, &b, sizeof b);
 }
@@ -216,7 +222,7 @@ static void put_material(struct hl_renderer *r, const struct hl_item *it,
     struct hl_material_block b;
     const struct hl_material *m = it->material;
     if (r->surfaces[it->surface].own_material &&
-        !r->surfaces[it->surface].blended) {
+        hl_surface_class(r, it->surface) == HL_CLASS_OPAQUE) {
         v->material = hl_arena_put(&r->arena, it->material_block,
                                    it->material_bytes);
         v->material_bytes = it->material_bytes;
@@ -238,6 +244,33 @@ static void put_material(struct hl_renderer *r, const struct hl_item *it,
 }
 
 /* ---- culling ------------------------------------------------------------ */
+
+enum hl_class hl_surface_class(const struct hl_renderer *r, uint32_t surface)
+{
+    const struct hl_surface *s = &r->surfaces[surface];
+    if (s->decal && r->plan.decals == HL_DECALS_BLEND_NORMALS)
+        return HL_CLASS_DECAL;
+    return s->blended || s->decal ? HL_CLASS_BLENDED : HL_CLASS_OPAQUE;
+}
+
+/* Lights with shadows go to the end: lists and batches have none of them. */
+static void part_lights(struct hl_renderer *r, const struct hl_frame *f)
+{
+    uint32_t n = 0;
+    r->n_plain = r->n_spheres;
+    if (r->plan.shadows == HL_SHADOWS_NONE)
+        return;
+    for (uint32_t i = 0; i < r->n_spheres; i++) {
+        struct hl_lit_sphere s = r->spheres[i];
+        if (f->lights[s.light].shadow)
+            continue;
+        /* In order: those between move up by one. */
+        for (uint32_t k = i; k > n; k--)
+            r->spheres[k] = r->spheres[k - 1];
+        r->spheres[n++] = s;
+    }
+    r->n_plain = n;
+}
 
 /* Shell sort, by surface and nearest first (or, blended, farthest first): in
  * place, no recursion, and equal depths fall back to the item order, so that
@@ -269,13 +302,13 @@ static void sort_visible(struct hl_visible *v, uint32_t n, bool far_first)
 }
 
 static uint32_t cull(struct hl_renderer *r, const struct hl_frame *f,
-                     uint32_t n, bool blended)
+                     uint32_t n, enum hl_class class)
 {
     float aspect = (float)r->plan.width / (float)r->plan.height;
     for (uint32_t i = 0; i < f->n_items; i++) {
         const struct hl_item *it = &f->items[i];
         struct hl_visible *v = &r->visible[n];
-        if (r->surfaces[it->surface].blended != blended || it->count == 0)
+        if (hl_surface_class(r, it->surface) != class || it->count == 0)
             continue;
         memset(v, 0, sizeof *v);
         v->item = i;
@@ -283,7 +316,7 @@ static uint32_t cull(struct hl_renderer *r, const struct hl_frame *f,
         v->box = hl_box_world(it->world, it->bounds_min, it->bounds_max);
         if (!hl_box_visible(&v->box, &f->camera, aspect, &v->z))
             continue;
-        if (blended) {
+        if (class != HL_CLASS_OPAQUE) {
             /* By the depth of the centre: z is the nearest corner's. */
             hl_vec3 c = hl_scale3(hl_add3(v->box.min, v->box.max), 0.5f);
             v->z = -hl_transform_point(f->camera.view, c).z;
@@ -338,20 +371,30 @@ enum hl_result hl_frame_gather(struct hl_renderer *r, const struct hl_frame *f)
     r->grid.tan_x = f->camera.tan_half_y * aspect;
     r->n_spheres = hl_lights_view(r->spheres, f->lights, f->n_lights,
                                   &f->camera, aspect);
-    r->n_opaque = cull(r, f, 0, false);
-    r->n_visible = cull(r, f, r->n_opaque, true);
+    part_lights(r, f);
+    r->n_opaque = cull(r, f, 0, HL_CLASS_OPAQUE);
+    r->n_decals = cull(r, f, r->n_opaque, HL_CLASS_DECAL);
+    r->n_visible = cull(r, f, r->n_decals, HL_CLASS_BLENDED);
     sort_visible(r->visible, r->n_opaque, false);
-    sort_visible(r->visible + r->n_opaque, r->n_visible - r->n_opaque, true);
+    sort_visible(r->visible + r->n_opaque, r->n_decals - r->n_opaque, true);
+    sort_visible(r->visible + r->n_decals, r->n_visible - r->n_decals, true);
+    for (uint32_t i = r->n_decals; i < r->n_visible; i++)
+        r->visible[i].pattern = HL_STIPPLE_NONE;
+    if (r->plan.stipple && r->n_visible > r->n_decals)
+        e = hl_stippling_assign(r, f);
+    if (e != HL_OK)
+        return e;
     put_frame_block(r, f);
     for (uint32_t i = 0; i < r->n_visible; i++) {
         struct hl_visible *v = &r->visible[i];
-        if (i >= r->n_opaque)
+        if (v->pattern == HL_STIPPLE_NONE)
             put_list(r, f, v);
         hl_gather_object(r, f, v);
         put_material(r, &f->items[v->item], v);
         put_textures(r, &f->items[v->item], i);
     }
     r->stats.items = r->n_visible;
+    r->stats.decals = r->n_decals - r->n_opaque;
     r->stats.items_culled = f->n_items - r->n_visible;
     r->stats.lights = r->n_spheres;
     r->stats.lights_culled = f->n_lights - r->n_spheres;

@@ -98,7 +98,7 @@ static enum hl_result need_program(struct hl_renderer *r, int kind)
 {
     for (uint32_t i = 0; i < r->n_surfaces; i++) {
         hl_prog *p = &r->prog[i][kind];
-        enum hl_result e = p->id || r->surfaces[i].blended
+        enum hl_result e = p->id || hl_surface_class(r, i) != HL_CLASS_OPAQUE
                            ? HL_OK : hl_surface_program(r, i, kind, p);
         if (e != HL_OK)
             return e;

@@ -51,6 +51,8 @@ static void inferred_specs(const struct hl_plan *plan, struct hl_prog_desc *p)
     spec_float(p, HL_SPEC_DSF_C, plan->dsf_c);
     spec_float(p, HL_SPEC_DSF_TAU, plan->dsf_tau);
     spec_float(p, HL_SPEC_LIGHT_SCALE, plan->light_scale);
+    spec(p, HL_SPEC_FILL, plan->fill_nearest);
+    spec(p, HL_SPEC_BILINEAR, plan->dsf_bilinear);
     packed_specs(plan, p);
 }
 
@@ -156,6 +158,21 @@ static void to_material(const struct hl_plan *plan, struct hl_prog_desc *p,
     inferred_specs(plan, p);
 }
 
+/* Over what is there: translucent surfaces and decals. */
+static void to_blended_material(const struct hl_plan *plan,
+                                struct hl_prog_desc *p,
+                                const struct hl_surface *s, int kind)
+{
+    struct hl_surface lit = *s;
+    lit.own_material = NULL;
+    to_material(plan, p, &lit, is_full(s));
+    p->blend = HL_BLEND_OVER;
+    if (kind != PROG_STIPPLE_MATERIAL)
+        return;
+    spec(p, HL_SPEC_STIPPLE, plan->stipple);
+    spec(p, HL_SPEC_STIPPLE_CONE, plan->stipple_cone);
+}
+
 static void to_forward(const struct hl_plan *plan, struct hl_prog_desc *p,
                        bool full, int kind)
 {
@@ -200,6 +217,27 @@ static void to_inspect(const struct hl_plan *plan, struct hl_prog_desc *p,
     }
 }
 
+static bool writes_depth(int kind)
+{
+    return kind != PROG_MORE && kind != PROG_BLENDED &&
+           kind != PROG_COUNT_MORE && kind != PROG_STIPPLE_MATERIAL &&
+           kind != PROG_DECAL_GBUFFER && kind != PROG_DECAL_MATERIAL;
+}
+
+/* HL_SPEC_MASK. Blended surfaces are not tested where they are blended; in
+ * passes at L-buffer size they are, so that no light is made for what cannot
+ * be seen (K 6). */
+static uint32_t mask_of(const struct hl_renderer *r, uint32_t surface,
+                        int kind)
+{
+    const struct hl_surface *s = &r->surfaces[surface];
+    bool small = kind == PROG_STIPPLE_GBUFFER || kind == PROG_STIPPLE_ID ||
+                 kind == PROG_SHADOW_DEPTH;
+    if (hl_surface_class(r, surface) == HL_CLASS_OPAQUE)
+        return s->masked;
+    return !small ? 0 : s->masked ? 1 : 2;
+}
+
 enum hl_result hl_surface_program(struct hl_renderer *r, uint32_t surface,
                                   int kind, hl_prog *out)
 {
@@ -211,12 +249,14 @@ enum hl_result hl_surface_program(struct hl_renderer *r, uint32_t surface,
     p.cull = s->two_sided ? HL_CULL_NONE : HL_CULL_BACK;
     p.mirrored = s->mirrored;
     p.depth_test = nearer(plan);
-    p.depth_write = kind != PROG_MORE && kind != PROG_BLENDED &&
-                    kind != PROG_COUNT_MORE;
+    p.depth_write = writes_depth(kind);
     if (kind == PROG_MORE || kind == PROG_COUNT_MORE)
         p.depth_test = HL_COMPARE_EQUAL;
-    if (kind == PROG_GBUFFER)
+    if (kind == PROG_GBUFFER || kind == PROG_STIPPLE_GBUFFER ||
+        kind == PROG_DECAL_GBUFFER)
         to_gbuffer(plan, &p, is_full(s));
+    else if (kind == PROG_STIPPLE_MATERIAL || kind == PROG_DECAL_MATERIAL)
+        to_blended_material(plan, &p, s, kind);
     else if (kind == PROG_MATERIAL)
         to_material(plan, &p, s, is_full(s));
     else if (kind == PROG_BASE || kind == PROG_MORE || kind == PROG_BLENDED)
@@ -228,7 +268,13 @@ enum hl_result hl_surface_program(struct hl_renderer *r, uint32_t surface,
         p.blend = HL_BLEND_ADD;
     if (kind == PROG_BLENDED)
         p.blend = HL_BLEND_OVER;
-    spec(&p, HL_SPEC_MASK, s->masked);
+    if (kind == PROG_STIPPLE_GBUFFER || kind == PROG_STIPPLE_ID)
+        spec(&p, HL_SPEC_STIPPLE, plan->stipple);
+    if (kind == PROG_DECAL_GBUFFER) {
+        spec(&p, HL_SPEC_DECAL, 1);
+        p.blend = HL_BLEND_OVER;
+    }
+    spec(&p, HL_SPEC_MASK, mask_of(r, surface, kind));
     spec(&p, HL_SPEC_TEXTURES, s->textures);
     spec(&p, HL_SPEC_TWO_SIDED, s->two_sided);
     return hl_prog_create(r->device, out, &p);
@@ -339,21 +385,35 @@ static enum hl_result refuse_own(struct hl_renderer *r)
     return HL_ERR_UNSUPPORTED;
 }
 
+/* Two kinds that follow each other. */
+static enum hl_result make_two(struct hl_renderer *r, uint32_t surface,
+                               int first)
+{
+    for (int k = first; k < first + 2; k++) {
+        enum hl_result e = hl_surface_program(r, surface, k,
+                                              &r->prog[surface][k]);
+        if (e != HL_OK)
+            return e;
+    }
+    return HL_OK;
+}
+
 static enum hl_result make_surface_programs(struct hl_renderer *r, uint32_t i)
 {
     bool inferred = r->plan.pipeline == HL_PIPELINE_INFERRED;
     int first = inferred ? PROG_GBUFFER : PROG_BASE;
     if (r->surfaces[i].own_material && !inferred)
         return refuse_own(r);
-    if (r->surfaces[i].blended)
-        return hl_surface_program(r, i, PROG_BLENDED,
-                                  &r->prog[i][PROG_BLENDED]);
-    for (int k = first; k < first + 2; k++) {
-        enum hl_result e = hl_surface_program(r, i, k, &r->prog[i][k]);
-        if (e != HL_OK)
-            return e;
+    enum hl_class c = hl_surface_class(r, i);
+    if (c == HL_CLASS_DECAL)
+        return make_two(r, i, PROG_DECAL_GBUFFER);
+    if (c == HL_CLASS_BLENDED) {
+        enum hl_result e = hl_surface_program(r, i, PROG_BLENDED,
+                                              &r->prog[i][PROG_BLENDED]);
+        return e == HL_OK && r->plan.stipple
+               ? make_two(r, i, PROG_STIPPLE_GBUFFER) : e;
     }
-    return HL_OK;
+    return make_two(r, i, first);
 }
 
 enum hl_result hl_programs_make(struct hl_renderer *r)

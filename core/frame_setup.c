@@ -7,9 +7,9 @@
 /* ---- memory ------------------------------------------------------------- */
 
 /* Carves one block into arrays; with base NULL it only adds up. */
-struct carve { uint8_t *base; size_t used; bool overflow; };
+struct hl_carve { uint8_t *base; size_t used; bool overflow; };
 
-static void *carve(struct carve *c, size_t count, size_t bytes)
+void *hl_carve(struct hl_carve *c, size_t count, size_t bytes)
 {
     size_t at = (c->used + 63) & ~(size_t)63;
     if (bytes && count > ((size_t)-1 / 4 - at) / bytes) {
@@ -67,32 +67,34 @@ static size_t list_bytes_of(const struct hl_renderer_desc *d)
     return d->plan->light_path == HL_LIGHT_PATH_LISTS ? 0x1000000 : 0x400000;
 }
 
-static void carve_all(struct carve *c, struct hl_renderer *r,
+static void carve_all(struct hl_carve *c, struct hl_renderer *r,
                       const struct hl_renderer_desc *d)
 {
     uint32_t nx, ny, tiles = tiles_of(d->plan, &nx, &ny);
     size_t items = d->max_items, lights = lights_of(d);
     size_t texels = d->plan->tile_depth ? (size_t)d->plan->light_width *
                                           d->plan->light_height : 0;
-    carve(c, 1, sizeof *r);
-    r->surfaces = carve(c, d->n_surfaces, sizeof *r->surfaces);
-    r->prog = carve(c, d->n_surfaces, sizeof *r->prog);
-    r->spheres = carve(c, lights, sizeof *r->spheres);
-    r->visible = carve(c, items, sizeof *r->visible);
-    r->textures = carve(c, items, sizeof *r->textures);
+    hl_carve(c, 1, sizeof *r);
+    r->surfaces = hl_carve(c, d->n_surfaces, sizeof *r->surfaces);
+    r->prog = hl_carve(c, d->n_surfaces, sizeof *r->prog);
+    r->spheres = hl_carve(c, lights, sizeof *r->spheres);
+    r->visible = hl_carve(c, items, sizeof *r->visible);
+    r->textures = hl_carve(c, items, sizeof *r->textures);
     r->max_draws = 4096;
-    r->draws = carve(c, r->max_draws, sizeof *r->draws);
-    r->tile_first = carve(c, (size_t)tiles + 1, sizeof *r->tile_first);
-    r->tile_heads = carve(c, (size_t)tiles * 2, sizeof *r->tile_heads);
+    r->draws = hl_carve(c, r->max_draws, sizeof *r->draws);
+    r->tile_first = hl_carve(c, (size_t)tiles + 1, sizeof *r->tile_first);
+    r->tile_heads = hl_carve(c, (size_t)tiles * 2, sizeof *r->tile_heads);
     r->max_refs = (uint32_t)least((size_t)tiles * lights, 0x400000);
-    r->refs = carve(c, r->max_refs, sizeof *r->refs);
-    r->tile_z0 = carve(c, tiles, sizeof(float));
-    r->tile_z1 = carve(c, tiles, sizeof(float));
-    r->depth_read = carve(c, texels, sizeof(float));
+    r->refs = hl_carve(c, r->max_refs, sizeof *r->refs);
+    r->tile_z0 = hl_carve(c, tiles, sizeof(float));
+    r->tile_z1 = hl_carve(c, tiles, sizeof(float));
+    r->depth_read = hl_carve(c, texels, sizeof(float));
     r->arena.size = (uint32_t)frame_bytes_of(d);
-    r->arena.bytes = carve(c, r->arena.size, 1);
+    r->arena.bytes = hl_carve(c, r->arena.size, 1);
     r->lists.size = (uint32_t)list_bytes_of(d);
-    r->lists.bytes = carve(c, r->lists.size, 1);
+    r->lists.bytes = hl_carve(c, r->lists.size, 1);
+    hl_stippling_carve(c, r, d);
+    hl_volumes_carve(c, r, d);
 }
 
 static bool desc_good(const struct hl_renderer_desc *d)
@@ -105,7 +107,7 @@ static bool desc_good(const struct hl_renderer_desc *d)
 
 size_t hl_renderer_bytes(const struct hl_renderer_desc *d)
 {
-    struct carve c = { NULL, 0, false };
+    struct hl_carve c = { NULL, 0, false };
     struct hl_renderer r;
     if (!desc_good(d))
         return 0;
@@ -119,7 +121,7 @@ static enum hl_result make_targets(struct hl_renderer *r, bool readback)
 {
     static const char *const labels[HL_ROLE_COUNT] = {
         "", "normal", "dsf", "exponent", "light depth", "light", "color",
-        "depth", "resolved", "depth copy" };
+        "depth", "resolved", "depth copy", "motion", "shadow map" };
     for (uint32_t i = 0; i < r->plan.n_targets; i++) {
         const struct hl_plan_target *t = &r->plan.target[i];
         struct hl_tex_desc d = { labels[t->role], t->format, t->width,
@@ -167,7 +169,11 @@ static enum hl_result make_all(struct hl_renderer *r, bool readback)
     enum hl_result e = make_targets(r, readback);
     if (e == HL_OK)
         e = make_buffers(r);
-    return e == HL_OK ? hl_programs_make(r) : e;
+    if (e == HL_OK)
+        e = hl_programs_make(r);
+    if (e == HL_OK)
+        e = hl_volumes_make(r);
+    return e == HL_OK ? hl_maps_make(r) : e;
 }
 
 static void set_up(struct hl_renderer *r, struct hl_device *device,
@@ -203,7 +209,7 @@ enum hl_result hl_renderer_create(struct hl_renderer **out,
     if (!device || !memory || hl_renderer_bytes(desc) == 0)
         return HL_ERR_INVALID;
     struct hl_renderer *r = memory;
-    struct carve c = { memory, 0, false };
+    struct hl_carve c = { memory, 0, false };
     memset(r, 0, sizeof *r);
     carve_all(&c, r, desc);
     set_up(r, device, desc);
@@ -232,6 +238,8 @@ void hl_renderer_destroy(struct hl_renderer **renderer)
     hl_prog_destroy(d, &r->count_prog);
     hl_prog_destroy(d, &r->count_tiles);
     hl_prog_destroy(d, &r->depth_copy);
+    hl_volumes_destroy(r);
+    hl_maps_destroy(r);
     for (uint32_t i = 0; i < r->n_surfaces; i++)
         for (int k = 0; k < PROG_KINDS; k++)
             hl_prog_destroy(d, &r->prog[i][k]);

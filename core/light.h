@@ -24,6 +24,15 @@ const char *hl_light_check(const struct hl_light *);
 /* Most that a light can add to a channel of D or S at any point. */
 float hl_light_peak(const struct hl_light *);
 
+/* What of the slopes a picture spans: pixel p, y down, sees slope
+ * x = tan_x (2 (p.x - jx) / w - 1), y = tan_y (1 - 2 (p.y - jy) / h). w and h
+ * may have fractions: the part of a target of cols x rows pixels that is
+ * drawn ends in one. */
+struct hl_span {
+    float w, h, jx, jy;      /* pixels                                       */
+    uint32_t cols, rows;     /* pixels that are drawn: of the whole target   */
+};
+
 /* Lights that can add anything to what the camera sees, in input order.
  * aspect = width / height. Returns how many were written to out (at most
  * n_lights). */

@@ -4,6 +4,7 @@
 /* What a scene asks of a frame: numbers an engine knows before it draws, and
  * choices it may fix. Zero is "unknown" for a number, "planner's choice" for
  * a choice. */
+#include "core/stipple_mode.h"
 #include "hal/caps.h"
 
 enum hl_pipeline {
@@ -29,7 +30,50 @@ enum hl_light_path {
     HL_LIGHT_PATH_AUTO = 0,
     HL_LIGHT_PATH_RECTS,           /* scissor rectangles, K lights a draw    */
     HL_LIGHT_PATH_TILES,           /* host-made tile lists, a draw a tile    */
-    HL_LIGHT_PATH_LISTS            /* the same lists looped in the shader    */
+    HL_LIGHT_PATH_LISTS,           /* the same lists looped in the shader    */
+    /* One draw a light, cut to its scissor rectangle and, where that is
+     * large, to a depth-fail stencil volume: the published way (K 2.2). */
+    HL_LIGHT_PATH_VOLUMES
+};
+
+/* How translucent surfaces are lit. */
+enum hl_translucency {
+    HL_TRANSLUCENCY_AUTO = 0,      /* the cheaper; 2X2 where there are shadows */
+    HL_TRANSLUCENCY_FORWARD,       /* all of an object's lights in its draw  */
+    HL_TRANSLUCENCY_2X2,           /* stippled into the G-buffer (K 4): three
+                                    * layers over opaque                     */
+    HL_TRANSLUCENCY_4X4            /* fifteen                                */
+};
+
+/* How a translucent pixel weighs the four samples of its pattern. */
+enum hl_stipple_filter {
+    HL_STIPPLE_FILTER_AUTO = 0,    /* CONE                                   */
+    HL_STIPPLE_CONE,               /* small radius cone (K 4)                */
+    HL_STIPPLE_BILINEAR
+};
+
+/* Lights with hl_light.shadow. Forward pipelines have no shadows. */
+enum hl_shadows {
+    HL_SHADOWS_NONE = 0,           /* hl_light.shadow is not read            */
+    HL_SHADOWS_VOLUMES,            /* stencil, depth-fail                    */
+    HL_SHADOWS_MAPS
+};
+
+/* What a pixel reads whose DSF taps are all rejected. */
+enum hl_fill {
+    HL_FILL_AUTO = 0,              /* NEAREST                                */
+    HL_FILL_NEAREST,               /* the nearest sample of its own surface
+                                    * within two L texels, else the tap nearest
+                                    * in depth                               */
+    HL_FILL_BILINEAR               /* all four, as published (K 3)           */
+};
+
+/* How the DSF fetches light. */
+enum hl_fetch {
+    HL_FETCH_AUTO = 0,             /* the cheaper                            */
+    HL_FETCH_GATHER,               /* four samples                           */
+    HL_FETCH_BILINEAR              /* one filtered where no tap is rejected,
+                                    * else four (K 7.1)                      */
 };
 
 /* Machines with Direct3D 9 pixel centres: who puts them at halves. Never
@@ -65,6 +109,13 @@ struct hl_needs {
     float peak;                    /* bound of summed light at any point     */
     float max_error;               /* 8-bit sRGB codes; 0 = 1                */
     bool decals;                   /* surfaces that change others' normals   */
+    uint32_t blended_layers;       /* most translucent objects over a pixel;
+                                    * 0 = unknown                            */
+    enum hl_shadows shadows;       /* what lights with hl_light.shadow get   */
+    uint32_t n_shadow_lights;
+    bool shadow_points;            /* some of them are point lights          */
+    bool motion;                   /* a motion vector channel is wanted      */
+    bool brdfs;                    /* some material has hl_material.brdf > 0 */
     bool light_depth_bound;        /* the light pass tests depth or stencil
                                     * while it reads depth (light volumes)   */
 
@@ -79,5 +130,17 @@ struct hl_needs {
     float dsf_tau;                 /* constant threshold, share of z; 0 = 1 % */
     enum hl_format light_format;
     enum hl_half_pixel half_pixel;
+    enum hl_translucency translucency;
+    enum hl_stipple_filter stipple_filter;
+    enum hl_stipple_mode stipple_mode;
+    enum hl_fill fill;
+    enum hl_fetch fetch;
+    uint32_t shadow_size;          /* texels a side of a shadow map, of each of
+                                    * a point light's six; 0 = 1024, or less
+                                    * where EDRAM holds less                 */
+    uint32_t volume_texels;        /* VOLUMES: lights whose rectangle has fewer
+                                    * L texels get no stencil volume; 0 = as
+                                    * measured, 1 = every light gets one     */
+    bool no_centroid;              /* multisampled: interpolate at centres   */
 };
 #endif

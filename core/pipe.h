@@ -24,6 +24,8 @@ struct hl_plan_target *hl_plan_add_target(struct hl_plan *, enum hl_role,
                                           enum hl_format, uint32_t width,
                                           uint32_t height, uint32_t samples);
 struct hl_plan_pass *hl_plan_add_pass(struct hl_plan *, enum hl_pass_role);
+/* Is the role one of the pass's colour targets? */
+bool hl_pass_colors(const struct hl_plan_pass *, enum hl_role);
 /* The frame's own targets: colour (able to blend when `blend`), depth, and
  * the resolved colour. */
 enum hl_refusal hl_plan_frame_targets(struct hl_plan *, const struct hl_ask *,
@@ -34,6 +36,14 @@ enum hl_format hl_plan_depth_format(const struct hl_caps *, int use,
                                     const struct hl_profile_format **row);
 enum hl_refusal hl_plan_common(struct hl_plan *, const struct hl_ask *);
 void hl_plan_finish(struct hl_plan *, const struct hl_ask *, double cost_ns);
+
+/* pipe_channels.c, pipe_dsf.c, pipe_stipple.c, pipe_shadow.c: parts of the
+ * inferred pipeline's plan. Channels go before the light path, DSF after all
+ * targets are there. */
+enum hl_refusal hl_plan_channels(struct hl_plan *, const struct hl_ask *);
+enum hl_refusal hl_plan_translucency(struct hl_plan *, const struct hl_ask *);
+enum hl_refusal hl_plan_shadows(struct hl_plan *, const struct hl_ask *);
+void hl_plan_dsf(struct hl_plan *, const struct hl_ask *);
 
 /* pipe_light.c: how the light pass finds its lights, giving nanoseconds, and
  * the L-buffer. */
@@ -60,6 +70,8 @@ enum hl_refusal hl_plan_profile(struct hl_plan *, const struct hl_ask *);
 /* How the normal and DSF targets keep two numbers. */
 void hl_plan_two16(struct hl_plan *, const struct hl_ask *,
                    const struct hl_profile_format *);
+/* Steps from 0 to 1 of a channel of a 16-bit pair. */
+float hl_plan_pair_steps(uint32_t two16);
 /* Scales of an L-buffer of fixed range, 0 < range; gives its error. */
 float hl_plan_light_range(struct hl_plan *, const struct hl_ask *,
                           const struct hl_profile_format *, uint32_t blends);

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Zlib */
 /* Inferred lighting (Kircher, Lawrance 2009): geometry and light passes at
  * L-buffer size, material pass at frame size through the DSF. */
-#include "core/exact.h"
 #include "core/pipe.h"
 #include "core/vec.h"
 
@@ -37,13 +36,6 @@ static void choose_size(struct hl_plan *p, const struct hl_ask *ask)
 }
 
 /* ---- G-buffer ----------------------------------------------------------- */
-
-/* Steps from 0 to 1 of a channel of a 16-bit pair. */
-static float pair_steps(uint32_t two16)
-{
-    return two16 == HL_TWO16_SIGNED || two16 == HL_TWO16_FIXED32 ? 65534.0f
-                                                                 : 65535.0f;
-}
 
 static void add_depth(struct hl_plan *p, const struct hl_ask *ask,
                       enum hl_format depth,
@@ -86,76 +78,13 @@ static enum hl_refusal choose_gbuffer(struct hl_plan *p,
     hl_plan_keep(p, t, ask->caps, row, true);
     if (!p->float_taps)
         t->sample_as = HL_FORMAT_R32_UINT;
-    t->error = ask->n.far / pair_steps(p->two16) * 0.5f;
+    t->error = ask->n.far / hl_plan_pair_steps(p->two16) * 0.5f;
     t->read_by = 1u << HL_PASS_MATERIAL;
     hl_plan_why(p, HL_WHY_DSF_FORMAT, (float)normal, t->error, ask->n.far, 0);
     if (p->float_taps)
         hl_plan_why(p, HL_WHY_FLOAT_TAPS, 0, 0, 0, 0);
     add_depth(p, ask, depth, depth_row);
     return HL_REFUSED_NOTHING;
-}
-
-static void choose_exponent(struct hl_plan *p, const struct hl_ask *ask)
-{
-    const enum hl_format list[] = { HL_FORMAT_R16_UNORM, HL_FORMAT_R8_UNORM,
-                                    HL_FORMAT_NONE };
-    if (ask->n.specular == HL_NEED_NO_SPECULAR) {
-        p->specular = HL_SPECULAR_NONE;
-        hl_plan_why(p, HL_WHY_EXPONENT_NONE, 0, 0, 0, 0);
-        return;
-    }
-    const struct hl_profile *c = &ask->caps->profile;
-    int use = HL_USE_TARGET | HL_USE_SAMPLED;
-    enum hl_format same = c->one_mrt_format
-        ? hl_plan_target(p, HL_ROLE_NORMAL)->format : HL_FORMAT_NONE;
-    const struct hl_profile_format *row =
-        hl_plan_row(ask->caps, c->scalar, same, use, 1);
-    enum hl_format f = row ? row->format
-                       : c->scalar[0].format ? HL_FORMAT_NONE
-                       : hl_format_pick(ask->caps, list, use, 1);
-    if (same != HL_FORMAT_NONE && f != same)
-        f = HL_FORMAT_NONE;
-    if (ask->n.specular == HL_NEED_ONE_EXPONENT || f == HL_FORMAT_NONE) {
-        p->specular = HL_SPECULAR_CONSTANT;
-        hl_plan_why(p, HL_WHY_EXPONENT_CONSTANT, p->exponent, 0, 0, 0);
-        return;
-    }
-    p->specular = HL_SPECULAR_CHANNEL;
-    struct hl_plan_target *t = hl_plan_add_target(p, HL_ROLE_EXPONENT, f,
-                                                  p->light_width,
-                                                  p->light_height, 1);
-    hl_plan_keep(p, t, ask->caps, row, true);
-    /* Half a step of log2(n) / 8; of floats, of the values above 1/2. */
-    float step = 8.0f * (hl_format_info(f)->kind == HL_KIND_FLOAT
-                         ? 6e-8f : hl_fixed_step(f));
-    t->error = (float)hl_exact_exp2((double)step * 0.5) - 1.0f;
-    t->read_by = 1u << HL_PASS_LIGHT;
-    hl_plan_why(p, HL_WHY_EXPONENT_CHANNEL, (float)f, t->error, 0, 0);
-}
-
-/* ---- DSF ---------------------------------------------------------------- */
-
-static void choose_dsf(struct hl_plan *p, const struct hl_ask *ask)
-{
-    const struct hl_needs *n = &ask->n;
-    p->dsf_k = n->dsf_k > 0 ? n->dsf_k : 1.5f;
-    p->dsf_c = n->dsf_c > 0 ? n->dsf_c : 0.001f;
-    p->dsf_tau = n->dsf_tau > 0 ? n->dsf_tau : 0.01f;
-    bool same = p->light_width == p->width && p->light_height == p->height;
-    if (n->dsf == HL_DSF_NONE) {
-        p->dsf = HL_DSF_OFF;
-        hl_plan_why(p, HL_WHY_DSF_OFF, 0, 0, 0, 0);
-    } else if (n->dsf == HL_DSF_CONSTANT_TAU) {
-        p->dsf = HL_DSF_CONSTANT;
-        hl_plan_why(p, HL_WHY_DSF_CONSTANT, p->dsf_tau, 0, 0, 0);
-    } else if (same && n->samples <= 1) {
-        p->dsf = HL_DSF_EXACT;
-        hl_plan_why(p, HL_WHY_DSF_EXACT, 0, 0, 0, 0);
-    } else {
-        p->dsf = HL_DSF_SLOPE;
-        hl_plan_why(p, HL_WHY_DSF_SLOPE, p->dsf_k, p->dsf_c,
-                    n->far / pair_steps(p->two16), 0);
-    }
 }
 
 /* ---- passes ------------------------------------------------------------- */
@@ -238,7 +167,13 @@ static enum hl_refusal plan_inferred(struct hl_plan *p,
     if (r != HL_REFUSED_NOTHING)
         return r;
     hl_plan_decals(p, ask, hl_plan_target(p, HL_ROLE_NORMAL)->format);
-    choose_exponent(p, ask);
+    r = hl_plan_channels(p, ask);
+    if (r == HL_REFUSED_NOTHING)
+        r = hl_plan_translucency(p, ask);
+    if (r == HL_REFUSED_NOTHING)
+        r = hl_plan_shadows(p, ask);
+    if (r != HL_REFUSED_NOTHING)
+        return r;
     if (ask->n.light_path == HL_LIGHT_PATH_LISTS &&
         ask->caps->max_storage_bytes == 0)
         return HL_REFUSED_STORAGE;
@@ -248,7 +183,7 @@ static enum hl_refusal plan_inferred(struct hl_plan *p,
         r = hl_plan_frame_targets(p, ask, ask->n.blended ? 1 : 0);
     if (r != HL_REFUSED_NOTHING)
         return r;
-    choose_dsf(p, ask);
+    hl_plan_dsf(p, ask);
     r = add_passes(p, ask);
     if (r != HL_REFUSED_NOTHING)
         return r;

@@ -57,7 +57,7 @@ static double path_cost(const struct hl_plan *p, const struct hl_ask *ask,
 double hl_plan_light_path(struct hl_plan *p, const struct hl_ask *ask)
 {
     bool lists = ask->caps->max_storage_bytes > 0;
-    double best = -1, cost[4] = { 0, 0, 0, 0 };
+    double best = -1, cost[5] = { 0, 0, 0, 0, 0 };
     p->tile = ask->n.tile ? ask->n.tile : TILE;
     p->batch = ask->n.batch ? ask->n.batch : 8;
     enum hl_light_path from = HL_LIGHT_PATH_RECTS, to = HL_LIGHT_PATH_LISTS;

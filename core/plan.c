@@ -37,6 +37,14 @@ struct hl_plan_pass *hl_plan_add_pass(struct hl_plan *p,
     return pass;
 }
 
+bool hl_pass_colors(const struct hl_plan_pass *pass, enum hl_role role)
+{
+    for (int i = 0; i < HL_PLAN_COLORS; i++)
+        if (pass->color[i] == role)
+            return true;
+    return false;
+}
+
 const struct hl_plan_target *hl_plan_target(const struct hl_plan *p,
                                             enum hl_role role)
 {
@@ -201,10 +209,16 @@ static enum hl_refusal check(const struct hl_needs *n,
     if ((n->batch && n->batch > HL_BATCH_MAX) ||
         (n->tile && (n->tile < 8 || n->tile > 256)) ||
         (unsigned)n->light_format >= HL_FORMAT_COUNT || n->lights > 7 ||
-        (unsigned)n->light_path > HL_LIGHT_PATH_LISTS ||
+        (unsigned)n->light_path > HL_LIGHT_PATH_VOLUMES ||
         (unsigned)n->dsf > HL_DSF_CONSTANT_TAU ||
         (unsigned)n->specular > HL_NEED_EXPONENTS ||
         (unsigned)n->half_pixel > HL_HALF_PIXEL_VERTEX ||
+        (unsigned)n->translucency > HL_TRANSLUCENCY_4X4 ||
+        (unsigned)n->stipple_filter > HL_STIPPLE_BILINEAR ||
+        (unsigned)n->stipple_mode > HL_STIPPLE_BY_DEPTH_FREE ||
+        (unsigned)n->shadows > HL_SHADOWS_MAPS ||
+        (unsigned)n->fill > HL_FILL_BILINEAR ||
+        (unsigned)n->fetch > HL_FETCH_BILINEAR || n->shadow_size > 16384 ||
         !good(n->lights_per_pixel, 0, 1e9f) ||
         !good(n->lights_per_object, 0, 1e9f) || !good(n->far, 0, 1e9f) ||
         !good(n->dsf_k, 0, 1e3f) || !good(n->dsf_c, 0, 1) ||

@@ -21,6 +21,8 @@ enum hl_role {                     /* of a target                            */
     HL_ROLE_RESOLVED,              /* the frame, one sample a pixel          */
     HL_ROLE_DEPTH_COPY,            /* LIGHT_DEPTH, where a bound depth target
                                     * cannot be read: one float channel      */
+    HL_ROLE_MOTION,                /* G-buffer: screen motion, two numbers   */
+    HL_ROLE_SHADOW_MAP,            /* depth from a light: 1 map, or 3 x 2    */
     HL_ROLE_COUNT
 };
 
@@ -32,10 +34,15 @@ enum hl_pass_role {
     HL_PASS_FORWARD,               /* base draws, then further lights        */
     HL_PASS_BLENDED,
     HL_PASS_DEPTH_COPY,            /* after the geometry pass                */
+    HL_PASS_SHADOW_MAP,            /* before the light pass of its light     */
+    HL_PASS_SHADOWED,              /* light of one light with shadow         */
     HL_PASS_ROLE_COUNT
 };
 
-enum hl_repeat { HL_ONCE = 0, HL_PER_TILE, HL_PER_LIGHTS, HL_PER_OBJECT_LIGHTS };
+enum hl_repeat {
+    HL_ONCE = 0, HL_PER_TILE, HL_PER_LIGHTS, HL_PER_OBJECT_LIGHTS,
+    HL_PER_SHADOW_LIGHT
+};
 
 /* Why something was decided; text and the paper's section are made outside
  * core from the id and up to four numbers. */
@@ -70,8 +77,19 @@ enum hl_reason {
     HL_WHY_EDRAM_SET, HL_WHY_EDRAM_SURFACE, HL_WHY_EDRAM_SUM, HL_WHY_EDRAM_FITS,
     HL_WHY_EDRAM_FITS_RESIDENT, HL_WHY_EDRAM_TILING,
     HL_WHY_NOT_BLENDABLE,
+    HL_WHY_STIPPLED, HL_WHY_STIPPLE_LAYERS, HL_WHY_STIPPLE_FILTER,
+    HL_WHY_SHADOW_VOLUMES, HL_WHY_SHADOW_MAPS, HL_WHY_SHADOW_SIZE,
+    HL_WHY_INFINITE_FAR, HL_WHY_VOLUME_TEXELS, HL_WHY_FILL, HL_WHY_FETCH,
+    HL_WHY_CENTROID, HL_WHY_MOTION, HL_WHY_BRDFS, HL_WHY_NO_LIGHT_PASS,
     HL_WHY_COUNT
 };
+
+/* Arguments of those whose name does not tell: STIPPLED side, forward and
+ * stippled nanoseconds a translucent pixel; STIPPLE_LAYERS asked for, there
+ * are; STIPPLE_FILTER 1 for cone; SHADOW_VOLUMES, _MAPS lights, maps a light;
+ * SHADOW_SIZE texels; VOLUME_TEXELS texels; FILL 1 for nearest; FETCH 1 for
+ * bilinear, nanoseconds a pixel gathered, filtered; CENTROID 1 for on;
+ * MOTION, BRDFS format. */
 
 /* Which need could not be met. */
 enum hl_refusal {
@@ -79,7 +97,8 @@ enum hl_refusal {
     HL_REFUSED_SAMPLES, HL_REFUSED_NORMAL_FORMAT, HL_REFUSED_COLOR_FORMAT,
     HL_REFUSED_LIGHT_FORMAT, HL_REFUSED_DEPTH_FORMAT, HL_REFUSED_STORAGE,
     HL_REFUSED_VALUE, HL_REFUSED_PIPELINE, HL_REFUSED_EDRAM,
-    HL_REFUSED_HALF_PIXEL, HL_REFUSED_COUNT
+    HL_REFUSED_HALF_PIXEL, HL_REFUSED_SHADOWS, HL_REFUSED_MOTION,
+    HL_REFUSED_COUNT
 };
 
 struct hl_plan_reason { enum hl_reason why; float arg[4]; };
@@ -99,10 +118,12 @@ struct hl_plan_target {
                                     * and COLOR relative                     */
 };
 
+enum { HL_PLAN_COLORS = 4 };       /* of a pass                              */
+
 struct hl_plan_pass {
     enum hl_pass_role role;
     enum hl_repeat repeat;
-    enum hl_role color[3];         /* NONE where unused                      */
+    enum hl_role color[HL_PLAN_COLORS]; /* NONE where unused                 */
     enum hl_role depth;
     bool depth_read_only, depth_write;
     enum hl_compare depth_test;
@@ -110,7 +131,7 @@ struct hl_plan_pass {
     uint32_t lights_a_draw;        /* 0: none                                */
 };
 
-enum { HL_PLAN_TARGETS = 10, HL_PLAN_PASSES = 8, HL_PLAN_REASONS = 40 };
+enum { HL_PLAN_TARGETS = 12, HL_PLAN_PASSES = 10, HL_PLAN_REASONS = 48 };
 
 enum hl_decals {                   /* how decals change normals              */
     HL_DECALS_NONE = 0,
@@ -147,6 +168,21 @@ struct hl_plan {
     bool float_taps;               /* DSF and L-buffer sampled as numbers    */
     enum hl_half_pixel half_pixel; /* AUTO: the machine has centres at halves */
     enum hl_decals decals;
+    enum hl_translucency translucency; /* AUTO: nothing is translucent       */
+    uint32_t stipple;              /* texels a side of a pattern's block: 0, 2
+                                    * or 4                                   */
+    bool stipple_cone;             /* its filter, else bilinear              */
+    enum hl_stipple_mode stipple_mode;
+    enum hl_shadows shadows;
+    uint32_t shadow_size;          /* of a map, texels a side                */
+    bool infinite_far;             /* projections end at no far plane, so that
+                                    * no volume is cut; camera.far still bounds
+                                    * culling and the DSF's depth            */
+    uint32_t volume_texels;        /* as needs', chosen                      */
+    bool fill_nearest;             /* hl_fill                                */
+    bool dsf_bilinear;             /* hl_fetch                               */
+    bool centroid;                 /* of the multisampled material pass      */
+    bool motion, brdfs;            /* further G-buffer channels              */
     uint32_t edram_tiles;          /* most tiles in use at once; 0: no EDRAM */
     float far;                     /* the depth that DSF stores as 1         */
 

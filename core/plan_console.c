@@ -240,6 +240,13 @@ void hl_plan_decals(struct hl_plan *p, const struct hl_ask *ask,
     hl_plan_why(p, why, (float)normal, 0, 0, 0);
 }
 
+/* Steps from 0 to 1 of a channel of a 16-bit pair. */
+float hl_plan_pair_steps(uint32_t two16)
+{
+    return two16 == HL_TWO16_SIGNED || two16 == HL_TWO16_FIXED32 ? 65534.0f
+                                                                 : 65535.0f;
+}
+
 /* ---- resolves ----------------------------------------------------------- */
 
 static enum hl_pass_role last_writer(const struct hl_plan *p,
@@ -249,7 +256,7 @@ static enum hl_pass_role last_writer(const struct hl_plan *p,
     for (uint32_t i = 0; i < p->n_passes; i++) {
         const struct hl_plan_pass *s = &p->pass[i];
         if ((s->depth == role && !s->depth_read_only) ||
-            s->color[0] == role || s->color[1] == role || s->color[2] == role)
+            hl_pass_colors(s, role))
             last = s->role;
     }
     return last;

@@ -4,11 +4,18 @@
 /* Private to core: what frame*.c share. These files alone call a device. */
 #include "core/frame.h"
 #include "core/light.h"
+#include "core/stipple.h"
 
 /* A surface's programs. */
 enum {
     PROG_GBUFFER, PROG_MATERIAL, PROG_BASE, PROG_MORE, PROG_BLENDED,
-    PROG_ID, PROG_REJECT, PROG_COUNT_BASE, PROG_COUNT_MORE, PROG_KINDS
+    PROG_ID, PROG_REJECT, PROG_COUNT_BASE, PROG_COUNT_MORE,
+    PROG_STIPPLE_GBUFFER,    /* geometry pass of what is translucent         */
+    PROG_STIPPLE_MATERIAL,   /* its blended material pass                    */
+    PROG_DECAL_GBUFFER, PROG_DECAL_MATERIAL,
+    PROG_SHADOW_DEPTH,       /* into a shadow map                            */
+    PROG_STIPPLE_ID,         /* HL_INSPECT_STIPPLE                           */
+    PROG_KINDS
 };
 
 /* Light draws come in four sizes, so that a tile of five lights does not
@@ -31,6 +38,36 @@ struct hl_visible {
     struct hl_box box;
     uint32_t object, material, material_bytes; /* offsets in the arena       */
     uint32_t list_first, list_count;           /* of a blended item          */
+    uint32_t motion;                           /* offset of hl_motion_block  */
+    uint8_t pattern;         /* 0 opaque, 1..15, or HL_STIPPLE_NONE          */
+};
+
+/* frame_stipple.c: patterns of a frame. Carved where plan.stipple. */
+struct hl_stippling {
+    struct hl_stipple *assigner;
+    struct hl_stipple_object *objects;
+    struct hl_stipple_outline *outlines;
+    uint8_t *patterns;
+};
+
+/* frame_volume.c: stencil volumes of lights and of shadows. */
+struct hl_volumes {
+    hl_buf vertex, index;    /* meshes of light volumes (light_volume.h)     */
+    hl_buf shadow_index[3];  /* FRAMES; shadow volumes' indices              */
+    uint32_t *indices;       /* of a frame, on the host                      */
+    uint32_t max_indices, n_indices;
+    void *scratch;
+    size_t scratch_bytes;
+    hl_prog mark;            /* light volume to stencil                      */
+    hl_prog shadow[2];       /* shadow volume to stencil; [1]: mirrored      */
+    hl_prog light;           /* where the light volume's stencil is          */
+    hl_prog shadowed;        /* where no shadow's stencil is                 */
+};
+
+/* frame_map.c: shadow maps. */
+struct hl_maps {
+    hl_prog light;           /* one light through its map                    */
+    hl_prog masked;
 };
 
 struct hl_renderer {
@@ -49,13 +86,18 @@ struct hl_renderer {
     uint32_t frame_offset;   /* of hl_frame_block in the arena               */
 
     /* Scratch of one frame. */
+    /* Lights without shadows first: n_plain of them. */
     struct hl_lit_sphere *spheres;
-    uint32_t n_spheres;
-    struct hl_visible *visible;    /* opaque first, then blended             */
-    uint32_t n_opaque, n_visible;
+    uint32_t n_plain, n_spheres;
+    struct hl_visible *visible;    /* opaque, then decals, then blended      */
+    uint32_t n_opaque, n_decals, n_visible;    /* opaque, decals, blended    */
     /* [0] for passes that make the light, [1] for those that read it. */
     struct hl_texture_binding (*textures)[2][HL_TEX_MESH_COUNT];
-    struct hl_texture_binding light_textures[3];
+    struct hl_texture_binding light_textures[4];
+    struct hl_stippling stippling;
+    struct hl_volumes volumes;
+    struct hl_maps maps;
+    struct hl_span span;     /* of the L-buffer                              */
     struct hl_draw *draws;
     uint32_t n_draws;
     uint32_t *tile_first, *refs;
@@ -70,6 +112,10 @@ struct hl_renderer {
     float count_steps;             /* count_steps of its range               */
     enum hl_result result;
 };
+
+/* frame_data.c: how an item of a surface is drawn by this plan. */
+enum hl_class { HL_CLASS_OPAQUE, HL_CLASS_DECAL, HL_CLASS_BLENDED };
+enum hl_class hl_surface_class(const struct hl_renderer *, uint32_t surface);
 
 /* frame_program.c */
 /* A plan's pass of a role; NULL where it has none. */
@@ -100,16 +146,49 @@ enum hl_result hl_frame_flush(struct hl_renderer *);
 void hl_gather_object(struct hl_renderer *, const struct hl_frame *,
                       struct hl_visible *);
 
+/* Every part: carve its memory, make and destroy what it has of a device. */
+struct hl_carve;
+void *hl_carve(struct hl_carve *, size_t count, size_t bytes);
+void hl_stippling_carve(struct hl_carve *, struct hl_renderer *,
+                        const struct hl_renderer_desc *);
+void hl_volumes_carve(struct hl_carve *, struct hl_renderer *,
+                      const struct hl_renderer_desc *);
+enum hl_result hl_volumes_make(struct hl_renderer *);
+void hl_volumes_destroy(struct hl_renderer *);
+enum hl_result hl_maps_make(struct hl_renderer *);
+void hl_maps_destroy(struct hl_renderer *);
+
+/* frame_stipple.c: a pattern for every visible blended item. */
+enum hl_result hl_stippling_assign(struct hl_renderer *,
+                                   const struct hl_frame *);
+/* frame_volume.c: lights of HL_LIGHT_PATH_VOLUMES, in an open light pass;
+ * and passes of their own for all lights with shadows, by stencil. */
+void hl_volumes_lights(struct hl_renderer *, const struct hl_frame *);
+void hl_volumes_shadowed(struct hl_renderer *, const struct hl_frame *);
+/* frame_map.c: the same by shadow maps. */
+void hl_maps_shadowed(struct hl_renderer *, const struct hl_frame *);
+
 /* frame.c */
 struct hl_draw *hl_draw_begin(struct hl_renderer *);
 struct hl_draw *hl_draw_mesh(struct hl_renderer *, const struct hl_frame *,
                              uint32_t visible, int kind);
+void hl_bind_uniform(struct hl_renderer *, struct hl_draw *, int slot,
+                     uint32_t offset, uint32_t bytes);
+void hl_bind_list(struct hl_renderer *, struct hl_draw *);
 void hl_draw_lights(struct hl_renderer *, struct hl_draw *, uint32_t offset);
 void hl_pass_begin(struct hl_renderer *, const char *label);
 void hl_pass_color(struct hl_renderer *, hl_tex, enum hl_load,
                    const float clear[4]);
 void hl_pass_depth(struct hl_renderer *, hl_tex, enum hl_load, bool read_only);
 void hl_pass_end(struct hl_renderer *);
+/* frame_light.c */
+/* Lights `refs` (of spheres) as a block of `size`, at most HL_BATCH_MAX. */
+uint32_t hl_put_batch(struct hl_renderer *, const struct hl_frame *,
+                      const uint32_t *refs, uint32_t n, uint32_t size);
+struct hl_draw *hl_draw_screen(struct hl_renderer *, hl_prog,
+                               const struct hl_rect *);
+/* Textures of passes that make light. */
+void hl_light_pass_textures(struct hl_renderer *);
 void hl_emit_light_pass(struct hl_renderer *, const struct hl_frame *);
 void hl_emit_forward(struct hl_renderer *, const struct hl_frame *);
 enum hl_result hl_build_tiles(struct hl_renderer *, const struct hl_frame *);

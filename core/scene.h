@@ -6,10 +6,15 @@
 #include "hal/hal.h"
 #include "shaders/shared/block.h"
 
+struct hl_shadow_mesh;       /* core/shadow_mesh.h                           */
+
 struct hl_camera {
     float view[16];          /* world to view, rigid; camera looks down -z   */
     float tan_half_y;        /* tangent of half the vertical field of view   */
     float near, far;         /* metres, 0 < near < far                       */
+    /* Frame pixels by which the picture is moved right and down, each within
+     * -1..1: of temporal antialiasing. Lights, stipple and buffers stay. */
+    float jitter[2];
 };
 
 /* Camera at eye looking to target; up is y, or -z when looking straight up
@@ -31,6 +36,15 @@ struct hl_light {
     float direction[3];      /* world, unit, as the light travels            */
     float inner, outer;      /* half angles, radians, spots                  */
     float color[3];
+    bool shadow;             /* casts shadows, where the plan has any        */
+};
+
+enum hl_brdf {
+    HL_BRDF_BLINN_PHONG = 0,
+    /* Light that enters beside the terminator: shaders/shared/shade.h
+     * hl_diffuse_skin; plans without brdfs draw it as BLINN_PHONG. */
+    HL_BRDF_SKIN,
+    HL_BRDF_COUNT
 };
 
 /* The model's surface (glTF metal-rough on Blinn-Phong). */
@@ -41,6 +55,7 @@ struct hl_material {
     float normal_scale;      /* of the normal map; 0 = flat                  */
     float alpha_cutoff;      /* masked surfaces                              */
     bool no_specular;        /* drop ks S                                    */
+    enum hl_brdf brdf;
 };
 
 /* How a kind of mesh is drawn: everything that needs a program of its own. */
@@ -49,7 +64,15 @@ struct hl_surface {
     uint32_t textures;       /* HL_TEXTURED_* bits that items bind           */
     bool vertex_color;       /* the layout has HL_ATTR_COLOR                 */
     bool masked;             /* alpha test                                   */
-    bool blended;            /* drawn last, forward, sorted, over            */
+    /* Drawn last, sorted, over. With masked: the alpha test decides where
+     * the geometry pass writes, and all of the surface is blended (K 6: fences
+     * and foliage). */
+    bool blended;
+    /* Lies on other surfaces, in front of them by a little: changes their
+     * normals by its alpha, and is blended over their colour. Implies no depth
+     * writes; blended and masked are 0. Where normals do not blend it is drawn
+     * as a translucent surface (plan.decals). */
+    bool decal;
     bool two_sided;
     bool mirrored;           /* model-to-world determinant is negative       */
     /* A material fragment stage of the embedder's own for the inferred
@@ -78,6 +101,17 @@ struct hl_item {
     struct hl_texture_binding texture[HL_ITEM_TEXTURES];
     const void *material_block;   /* own_material surfaces                   */
     uint32_t material_bytes;
+    /* Translucent: who it is from frame to frame, no two alike; 0: 1 + its
+     * index in the frame's items. */
+    uint32_t name;
+    uint8_t stipple;         /* pattern wanted (HL_STIPPLE_USER), 0: none    */
+    bool no_shadow;          /* casts none                                   */
+    /* For shadow volumes, else it casts none: the prepared mesh, and its
+     * vertices in a vertex buffer (core/shadow_volume.h). */
+    const struct hl_shadow_mesh *shadow_mesh;
+    hl_buf shadow_vertices;
+    /* Model to world of the last frame, for motion; NULL: it did not move. */
+    const float *world_before;
 };
 
 struct hl_frame {
@@ -88,5 +122,11 @@ struct hl_frame {
     uint32_t n_lights;
     float ambient[3];
     float background[3];
+    /* Camera of the last frame, for motion; NULL: it did not move. */
+    const struct hl_camera *before;
+    /* Part of the frame's targets that is drawn, from the top left on, pixels;
+     * 0: all. The L-buffer's part keeps the same ratio, so that filters and
+     * stipple patterns do not notice (dynamic resolution). */
+    uint32_t width, height;
 };
 #endif

@@ -14,6 +14,7 @@
  * before, not on the machine, the order of the array or the time taken.
  * Memory is the caller's; nothing here allocates. */
 #include "core/scene.h"
+#include "core/stipple_mode.h"
 
 enum {
     HL_STIPPLE_2X2 = 3,      /* patterns of a 2 x 2 block, 1..3              */
@@ -72,20 +73,6 @@ void hl_stipple_bound(struct hl_stipple_object *,
                       const struct hl_stipple_outline *);
 
 /* ---- assigning ------------------------------------------------------- */
-
-enum hl_stipple_mode {
-    /* No conflicts; the least weight without a pattern; then the least weight
-     * that changes its pattern. */
-    HL_STIPPLE_BEST = 0,
-    /* The paper's first: what the user wants; wanted 0 gets NONE. */
-    HL_STIPPLE_USER,
-    /* The paper's second: patterns dealt in turn, 1, 2, .. P, 1, .., from the
-     * nearest object to the farthest (equal depths by id). */
-    HL_STIPPLE_BY_DEPTH,
-    /* The same order; each takes the lowest pattern that none of the nearer
-     * objects which it overlaps has, NONE when there is none. */
-    HL_STIPPLE_BY_DEPTH_FREE
-};
 
 struct hl_stipple_frame {
     const struct hl_stipple_object *objects;

@@ -5,6 +5,7 @@
  * where materials differ in it, the specular exponent. */
 #define HL_NORMALS
 #include "shaders/surface.glsl"
+#include "shaders/stipple.glsl"
 
 layout(constant_id = HL_SPEC_TWO16) const uint hl_spec_two16 = 0u;
 layout(constant_id = HL_SPEC_ID_STEPS) const float hl_spec_id_steps = 65535.0;
@@ -17,6 +18,7 @@ layout(location = 2) out vec4 out_exponent;
 
 void main()
 {
+    hl_stipple_test();
 #ifdef HL_FULL
     if (hl_spec_mask != 0u)
         hl_alpha_test(hl_base_color().a);

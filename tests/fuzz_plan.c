@@ -38,12 +38,12 @@ static void some_choices(struct fz *f, bool wild, struct hl_needs *n)
 {
     n->decals = fz_bool(f);
     n->light_depth_bound = fz_bool(f);
-    n->light_path = (enum hl_light_path)choice(f, wild, 4);
+    n->light_path = (enum hl_light_path)choice(f, wild, 5);
     n->batch = fz_bool(f) ? 0 : choice(f, wild, 17);
     n->tile = fz_bool(f) ? 0 : (wild ? 0u : 8u) + count(f, wild, 248);
     n->no_tile_depth = fz_bool(f);
     n->no_scissor = fz_bool(f);
-    n->dsf = (enum hl_dsf)choice(f, wild, 4);
+    n->dsf = (enum hl_dsf)choice(f, wild, 5);
     n->dsf_k = fz_bool(f) ? 0 : real(f, wild, 1000);
     n->dsf_c = fz_bool(f) ? 0 : real(f, wild, 1);
     n->dsf_tau = fz_bool(f) ? 0 : real(f, wild, 1);
@@ -184,7 +184,7 @@ static void check_plan(const struct hl_plan *p, const struct hl_needs *n,
     FZ_CHECK(p->batch >= 1 && p->batch <= HL_BATCH_MAX);
     FZ_CHECK(p->tile >= 8 && p->tile <= 256);
     FZ_CHECK(p->light_path > HL_LIGHT_PATH_AUTO &&
-             p->light_path <= HL_LIGHT_PATH_LISTS);
+             p->light_path <= HL_LIGHT_PATH_VOLUMES);
     FZ_CHECK(hl_plan_target(p, HL_ROLE_LIGHT));
 }
 

@@ -69,7 +69,7 @@ static struct hl_needs some_needs(uint64_t *seed)
     n.far = some_number(seed);
     n.peak = some_number(seed);
     n.max_error = some_number(seed);
-    n.light_path = (enum hl_light_path)some_choice(seed, 4);
+    n.light_path = (enum hl_light_path)some_choice(seed, 5);
     n.batch = mk_below(seed, 2) ? some_choice(seed, 17) : 0;
     n.tile = mk_below(seed, 2) ? 8 + mk_below(seed, 250) : 0;
     n.no_tile_depth = mk_below(seed, 2);
@@ -199,7 +199,7 @@ static void check_plan(const struct hl_plan *p, const struct hl_needs *n,
     assert_true(p->batch >= 1 && p->batch <= HL_BATCH_MAX);
     assert_true(p->tile >= 8 && p->tile <= 256);
     assert_true(p->light_path >= HL_LIGHT_PATH_RECTS &&
-                p->light_path <= HL_LIGHT_PATH_LISTS);
+                p->light_path <= HL_LIGHT_PATH_VOLUMES);
     assert_true(p->light_path != HL_LIGHT_PATH_LISTS ||
                 caps->max_storage_bytes > 0);
     assert_true(!p->tile_depth || !n->no_tile_depth);
@@ -307,7 +307,7 @@ static void more_is_never_cheaper(void **state)
         n.n_triangles = mk_below(&seed, 1000000);
         n.lights_per_pixel = (float)ck_between(&seed, 0.001, n.n_lights);
         n.lights_per_object = (float)ck_between(&seed, 0.001, n.n_lights);
-        n.light_path = (enum hl_light_path)mk_below(&seed, 4);
+        n.light_path = (enum hl_light_path)mk_below(&seed, 5);
         struct hl_needs more = raised(n, (int)(i % 7));
         enum hl_pipeline want = (enum hl_pipeline)mk_below(&seed,
                                                            HL_PIPELINE_COUNT);
@@ -401,7 +401,7 @@ static void each_bad_need_is_named(void **state)
     ALLOWED(tile, 256);
     REFUSED(lights, 8, HL_REFUSED_VALUE);
     REFUSED(light_format, HL_FORMAT_COUNT, HL_REFUSED_VALUE);
-    REFUSED(light_path, (enum hl_light_path)4, HL_REFUSED_VALUE);
+    REFUSED(light_path, (enum hl_light_path)5, HL_REFUSED_VALUE);
     REFUSED(dsf, (enum hl_dsf)4, HL_REFUSED_VALUE);
     REFUSED(specular, (enum hl_specular_need)3, HL_REFUSED_VALUE);
     REFUSED(exponent, 257, HL_REFUSED_VALUE);

@@ -15,6 +15,9 @@
 #define HL_SLOT_OBJECT 1
 #define HL_SLOT_MATERIAL 2
 #define HL_SLOT_LIGHTS 3
+#define HL_SLOT_VOLUME 2    /* of volume.vert: hl_volume_block               */
+#define HL_SLOT_SHADOW 2    /* of the light pass: hl_shadow_block            */
+#define HL_SLOT_MOTION 3    /* of the geometry pass: hl_motion_block         */
 /* Storage slots (set 2). */
 #define HL_SLOT_LIST 0
 #define HL_SLOT_TILES 1
@@ -22,6 +25,7 @@
 #define HL_TEX_DEPTH 0
 #define HL_TEX_NORMAL 1
 #define HL_TEX_EXPONENT 2
+#define HL_TEX_SHADOW 3
 /* ... and of passes that draw meshes. */
 #define HL_TEX_LIGHT 0
 #define HL_TEX_DSF 1
@@ -66,6 +70,17 @@
 #define HL_SPEC_SHIFT_X 21       /* clip x += w * shift, float: half a pixel */
 #define HL_SPEC_SHIFT_Y 22       /* the same for y (down)                    */
 #define HL_SPEC_DEPTH_READ 23    /* HL_DEPTH_READ_*                          */
+#define HL_SPEC_STIPPLE 24       /* of translucent surfaces: 0, or 2 or 4     */
+#define HL_SPEC_STIPPLE_CONE 25  /* 1: cone filter, else bilinear            */
+#define HL_SPEC_FILL 26          /* 1: hl_fill NEAREST                       */
+#define HL_SPEC_BILINEAR 27      /* 1: hl_fetch BILINEAR; light is sampled as
+                                  * numbers and filtered                     */
+#define HL_SPEC_BRDFS 28         /* 1: the exponent channel is a pair, and has
+                                  * the BRDF as its second number            */
+#define HL_SPEC_MAP_SIZE 29      /* shadow map: texels a side, float         */
+#define HL_SPEC_MAP_FACES 30     /* shadow map: 1, or 6 of a point light     */
+#define HL_SPEC_DECAL 31         /* geometry pass: 1 writes nothing but the
+                                  * normal, with the surface's alpha         */
 
 /* How a depth target is sampled. */
 #define HL_DEPTH_READ_FLOAT 0
@@ -113,6 +128,8 @@
 #define HL_VARY_SPECULAR 6  /* flat vec4: ks, exponent n                     */
 #define HL_VARY_BASE 7      /* flat vec4: e + rho A, 0                       */
 #define HL_VARY_POSITION 8  /* view position                                 */
+#define HL_VARY_CLIP 9      /* clip x, y, w at the centroid (HL_CENTROID)    */
+#define HL_VARY_MOTION 10   /* clip x, y, w now, and of the last frame       */
 
 #ifdef HL_GLSL
 layout(set = 0, binding = HL_SLOT_FRAME, std140) uniform hl_frame_block {
@@ -138,7 +155,9 @@ struct hl_object_block {
     hl_mat4 normal;     /* model to view, cofactor 3 x 3: normals            */
     hl_mat4 model_view; /* positions and tangents                            */
     hl_vec4 ids;        /* id base, object index, list offset, list count    */
-    hl_vec4 flat_ids;   /* exponent code; -1 for mirrored objects, else 1    */
+    /* Exponent code; -1 for mirrored objects, else 1; stipple pattern, 0 for
+     * opaque; BRDF, an enum hl_brdf. */
+    hl_vec4 flat_ids;
 #ifdef HL_GLSL
 } hl_object;
 #else
@@ -169,5 +188,17 @@ layout(set = 0, binding = HL_SLOT_LIGHTS, std140) uniform hl_lights_block {
 } hl_lights;
 #else
 enum { HL_LIGHTS_BYTES = HL_BATCH_MAX * HL_LIGHT_VEC4S * 16 };
+
+/* Of stages that draw volumes (volume.vert lays it out the same). */
+struct hl_volume_block {
+    hl_mat4 clip;       /* model to clip                                     */
+    hl_vec4 light;      /* in model space, as hl_shadow_light gives it       */
+};
+
+/* Of the geometry pass with HL_MOTION. */
+struct hl_motion_block {
+    hl_mat4 before;     /* model to the last frame's clip, no jitter         */
+    hl_mat4 now;        /* model to this frame's clip, no jitter             */
+};
 #endif
 #endif
