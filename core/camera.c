@@ -28,5 +28,6 @@ enum hl_result hl_camera_look_at(struct hl_camera *out, const float eye[3],
                                           (3.14159265358979323846 / 360));
     out->near = near;
     out->far = far;
+    out->jitter[0] = out->jitter[1] = 0;
     return HL_OK;
 }

@@ -26,8 +26,8 @@ static bool binds(const struct hl_plan_pass *s, enum hl_role role)
 static bool of_light_size(enum hl_role r)
 {
     return r == HL_ROLE_NORMAL || r == HL_ROLE_DSF || r == HL_ROLE_EXPONENT ||
-           r == HL_ROLE_LIGHT_DEPTH || r == HL_ROLE_DEPTH_COPY ||
-           r == HL_ROLE_LIGHT;
+           r == HL_ROLE_MOTION || r == HL_ROLE_LIGHT_DEPTH ||
+           r == HL_ROLE_DEPTH_COPY || r == HL_ROLE_LIGHT;
 }
 
 static void live(struct placing *k, uint32_t i, bool resident)
@@ -126,19 +126,38 @@ static void put(struct placing *k, uint32_t i, const bool *done)
     }
 }
 
+/* At the end, where that is free: all below stays in one piece for shadow
+ * maps, which come when all but the light's target is gone. */
+static void put_last(struct placing *k, uint32_t i, const bool *done)
+{
+    struct surface *s = &k->s[i];
+    uint64_t end = k->caps->profile.edram_tiles;
+    bool free = s->tiles <= end;
+    s->base = free ? end - s->tiles : 0;
+    for (uint32_t j = 0; j < k->plan->n_targets; j++)
+        free = free && !(done[j] && meet(s, &k->s[j]));
+    if (!free)
+        put(k, i, done);
+}
+
 /* Depth first, so that what comes and goes beside it stays in one piece. */
 static bool place(struct placing *k)
 {
     static const enum hl_role order[] = {
         HL_ROLE_LIGHT_DEPTH, HL_ROLE_NORMAL, HL_ROLE_DSF, HL_ROLE_EXPONENT,
-        HL_ROLE_DEPTH_COPY, HL_ROLE_LIGHT, HL_ROLE_DEPTH, HL_ROLE_COLOR };
+        HL_ROLE_MOTION, HL_ROLE_DEPTH_COPY, HL_ROLE_LIGHT,
+        HL_ROLE_SHADOW_MAP, HL_ROLE_DEPTH, HL_ROLE_COLOR };
+    bool maps = hl_plan_target(k->plan, HL_ROLE_SHADOW_MAP) != NULL;
     bool done[HL_PLAN_TARGETS] = { false }, fits = true;
     for (uint32_t o = 0; o < sizeof order / sizeof *order; o++)
         for (uint32_t i = 0; i < k->plan->n_targets; i++) {
             if (k->plan->target[i].role != order[o] ||
                 k->s[i].from > k->s[i].to)
                 continue;
-            put(k, i, done);
+            if (maps && order[o] == HL_ROLE_LIGHT)
+                put_last(k, i, done);
+            else
+                put(k, i, done);
             done[i] = true;
             fits = fits && k->s[i].base + k->s[i].tiles <=
                            k->caps->profile.edram_tiles;

@@ -111,6 +111,8 @@ struct hl_draw *hl_draw_mesh(struct hl_renderer *r, const struct hl_frame *f,
     d->first = it->first;
     d->count = it->count;
     d->base_vertex = it->base_vertex;
+    d->scissor = is_gbuffer(kind) || kind == PROG_STIPPLE_ID
+                 ? r->light_scissor : r->frame_scissor;
     hl_bind_uniform(r, d, HL_SLOT_FRAME, r->frame_offset,
                  sizeof(struct hl_frame_block));
     hl_bind_uniform(r, d, HL_SLOT_OBJECT, v->object,
@@ -151,7 +153,9 @@ static void geometry_pass(struct hl_renderer *r, const struct hl_frame *f)
     /* Background: the code of normal (0,0,1), depth far, id 0. */
     clear_packed(r, HL_ROLE_NORMAL, 0.5f, 0.5f);
     clear_packed(r, HL_ROLE_DSF, 1, 0);
-    if (r->target[HL_ROLE_EXPONENT].id)
+    if (r->plan.brdfs)
+        clear_packed(r, HL_ROLE_EXPONENT, 0, 0);
+    else if (r->target[HL_ROLE_EXPONENT].id)
         hl_pass_color(r, r->target[HL_ROLE_EXPONENT], HL_LOAD_CLEAR, zero);
     if (r->target[HL_ROLE_MOTION].id)
         clear_packed(r, HL_ROLE_MOTION, 0.5f, 0.5f);
@@ -191,7 +195,8 @@ static void light_pass(struct hl_renderer *r, const struct hl_frame *f)
     hl_pass_begin(r, "light");
     hl_pass_color(r, r->target[HL_ROLE_LIGHT], HL_LOAD_CLEAR, black);
     if (plan && plan->depth != HL_ROLE_NONE)
-        hl_pass_depth(r, r->target[plan->depth], HL_LOAD_KEEP, true);
+        hl_pass_depth(r, r->target[plan->depth], HL_LOAD_KEEP,
+                      plan->depth_read_only);
     hl_emit_light_pass(r, f);
     hl_pass_end(r);
     if (r->n_spheres == r->n_plain)
@@ -259,7 +264,7 @@ enum hl_result hl_frame_draw(struct hl_renderer *r, const struct hl_frame *f,
     enum hl_result e = hl_frame_gather(r, f);
     if (e != HL_OK)
         return e;
-    if (r->plan.pipeline == HL_PIPELINE_INFERRED) {
+    if (hl_plan_pass(&r->plan, HL_PASS_GEOMETRY)) {
         geometry_pass(r, f);
         depth_copy_pass(r);
         light_pass(r, f);

@@ -18,6 +18,12 @@ struct hl_renderer_desc {
     size_t frame_bytes;      /* uniform data of a frame; 0: by the two above */
     size_t list_bytes;       /* light lists of a frame; 0: likewise          */
     bool readback;           /* targets can be read by hl_tex_read           */
+    uint32_t shadow_indices; /* room for shadow volumes, 16 bytes an index,
+                              * where plan.shadows is VOLUMES; 0 = 2^20. One
+                              * object's volume must fit: as many as 6 a
+                              * triangle and 6 an edge of its outline. With
+                              * less than a frame's volumes take the frame
+                              * waits for the device each time it is full    */
 };
 
 /* Host memory a renderer needs; 0 when the desc is invalid. */
@@ -62,7 +68,9 @@ struct hl_frame_stats {
 enum hl_result hl_frame_draw(struct hl_renderer *, const struct hl_frame *,
                              struct hl_frame_stats *stats);
 
-/* The finished frame: linear, one sample a pixel. */
+/* The finished frame: linear, one sample a pixel. The whole target, of the
+ * plan's size: valid are hl_frame.width x height pixels from the top left,
+ * the rest is background. */
 hl_tex hl_renderer_output(const struct hl_renderer *);
 /* {0} where the plan has no such target. */
 hl_tex hl_renderer_target(const struct hl_renderer *, enum hl_role);
@@ -90,8 +98,9 @@ enum hl_result hl_frame_inspect(struct hl_renderer *, const struct hl_frame *,
                                 enum hl_inspect, void *out, size_t bytes);
 
 /* Needs of a frame: counts, mean lights a pixel and an object, kinds of
- * light, exponents, the light's peak. Sizes and choices are the caller's and
- * left as they are. */
+ * light, exponents, BRDFs, the light's peak, translucent layers, decals. Sizes
+ * and choices are the caller's and left as they are; of these, translucency
+ * FORWARD takes the exponents of translucent surfaces out. */
 void hl_needs_measure(struct hl_needs *needs, const struct hl_frame *frame,
                       const struct hl_surface *surfaces, float aspect);
 #endif

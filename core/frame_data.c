@@ -100,10 +100,25 @@ static enum hl_result check_item(struct hl_renderer *r,
         return refuse(r, "hl_frame.items", i, "material_block is NULL");
     if (it->material && !material_finite(it->material))
         return refuse(r, "hl_frame.items", i, "material not finite");
+    if (r->plan.stipple && r->plan.stipple_mode == HL_STIPPLE_USER &&
+        it->stipple >= r->plan.stipple * r->plan.stipple)
+        return refuse(r, "hl_frame.items", i, "stipple is no pattern");
     if (!finite_all(it->world, 16) || !finite_all(it->bounds_min, 3) ||
         !finite_all(it->bounds_max, 3))
         return refuse(r, "hl_frame.items", i, "world or bounds not finite");
+    if (it->material && (unsigned)it->material->brdf >= HL_BRDF_COUNT)
+        return refuse(r, "hl_frame.items", i, "material.brdf is not one");
+    if (r->plan.motion && it->world_before &&
+        !finite_all(it->world_before, 16))
+        return refuse(r, "hl_frame.items", i, "world_before not finite");
     return HL_OK;
+}
+
+static bool is_camera(const struct hl_camera *c)
+{
+    return finite_all(c->view, 16) && c->near > 0 && c->far > c->near &&
+           c->tan_half_y > 0 && finite_all(&c->far, 1) &&
+           finite_all(&c->tan_half_y, 1);
 }
 
 static enum hl_result check_frame(struct hl_renderer *r,
@@ -112,10 +127,15 @@ static enum hl_result check_frame(struct hl_renderer *r,
     const struct hl_camera *c = &f->camera;
     if ((f->n_items && !f->items) || (f->n_lights && !f->lights))
         return refuse(r, "hl_frame", 0, "items or lights is NULL");
-    if (!finite_all(c->view, 16) || !(c->near > 0) || !(c->far > c->near) ||
-        !(c->tan_half_y > 0) || !finite_all(&c->far, 1) ||
-        !finite_all(&c->tan_half_y, 1))
+    if (!is_camera(c))
         return refuse(r, "hl_frame.camera", 0, "not a camera");
+    if (!(c->jitter[0] >= -1 && c->jitter[0] <= 1) ||
+        !(c->jitter[1] >= -1 && c->jitter[1] <= 1))
+        return refuse(r, "hl_frame.camera", 0, "jitter is not within -1..1");
+    if (f->width > r->plan.width || f->height > r->plan.height)
+        return refuse(r, "hl_frame", 0, "width or height above the plan's");
+    if (r->plan.motion && f->before && !is_camera(f->before))
+        return refuse(r, "hl_frame.before", 0, "not a camera");
     if (!finite_all(f->ambient, 3) || !finite_all(f->background, 3))
         return refuse(r, "hl_frame", 0, "ambient or background not finite");
     if (f->n_items > r->max_items || f->n_lights > r->max_lights) {
@@ -135,18 +155,10 @@ static enum hl_result check_frame(struct hl_renderer *r,
 
 /* ---- blocks ------------------------------------------------------------- */
 
-static hl_vec4 ray(float tan_x, float tan_y, float w, float h)
+static hl_vec4 ray(const struct hl_span *s)
 {
-    return hl_v4(2 * tan_x / w, -2 * tan_y / h, -tan_x, tan_y);
-}
-
-/* Depth as stored, d = A / z + B, inverted to z = x / (d + y). */
-static void depth_terms(const struct hl_renderer *r,
-                        const struct hl_camera *c, float *x, float *y)
-{
-    double n = (double)c->near, f = (double)c->far;
-    *x = (float)(r->plan.reversed_depth ? n * f / (f - n) : -n * f / (f - n));
-    *y = (float)(r->plan.reversed_depth ? n / (f - n) : -f / (f - n));
+    float x = 2 * s->tan_x / s->w, y = 2 * s->tan_y / s->h;
+    return hl_v4(x, -y, -s->tan_x - s->jx * x, s->tan_y + s->jy * y);
 }
 
 static void put_frame_block(struct hl_renderer *r, const struct hl_frame *f)
@@ -155,34 +167,14 @@ static void put_frame_block(struct hl_renderer *r, const struct hl_frame *f)
     const struct hl_camera *c = &f->camera;
     struct hl_frame_block b;
     memset(&b, 0, sizeof b);
-    float w = (float)p->width, h = (float)p->height;
-    float lw = p->light_width ? (float)p->light_width : w;
-    float lh = p->light_height ? (float)p->light_height : h;
-    float ty = c->tan_half_y, tx = ty * w / h;
-    b.ray_light = ray(tx, ty, lw, lh);
-    depth_terms(r, c, &b.depth.x, &b.depth.y);
+    b.ray_light = ray(p->light_width ? &r->span : &r->frame_span);
+    hl_depth_terms(r, c, &b.depth.x, &b.depth.y);
     b.depth.z = 1.0f / c->far;
     b.depth.w = c->far;
     b.ambient = hl_v4(f->ambient[0], f->ambient[1], f->ambient[2],
                       p->light_scale);
     b.misc = hl_v4(p->exponent, (float)r->grid.tile, (float)r->grid.nx, 0);
     r->frame_offset = hl_arena_put(&r->arena, &b, sizeof b);
-}
-
-/* View to clip: y down, z in 0..w (hal.h's convention). */
-static void projection(const struct hl_renderer *r, const struct hl_camera *c,
-                       float out[16])
-{
-    double n = (double)c->near, f = (double)c->far;
-    bool rev = r->plan.reversed_depth;
-    float tan_x = c->tan_half_y * (float)r->plan.width /
-                  (float)r->plan.height;
-    memset(out, 0, 16 * sizeof *out);
-    out[0] = 1.0f / tan_x;
-    out[5] = -1.0f / c->tan_half_y;
-    out[10] = (float)(rev ? n / (f - n) : -f / (f - n));
-    out[14] = (float)(rev ? n * f / (f - n) : -n * f / (f - n));
-    out[11] = -1.0f;
 }
 
 static void copy4(hl_mat4 *out, const float m[16]) { memcpy(out, m, 64); }
@@ -193,7 +185,7 @@ void hl_gather_object(struct hl_renderer *r, const struct hl_frame *f,
     const struct hl_item *it = &f->items[v->item];
     struct hl_object_block b;
     float proj[16], mv[16], clip[16], cof[16];
-    projection(r, &f->camera, proj);
+    hl_view_to_clip(r, &f->camera, true, proj);
     hl_mul4(mv, f->camera.view, it->world);
     hl_mul4(clip, proj, mv);
     hl_cofactor3(cof, mv);
@@ -216,8 +208,28 @@ void hl_gather_object(struct hl_renderer *r, const struct hl_frame *f,
     v->object = hl_arena_put(&r->arena, &b, sizeof b);
 }
 
-static void put_material(struct hl_renderer *r, const struct hl_item *it,
-                         struct hl_visible *v)
+/* Both without jitter, which is no motion of anything, and both by this
+ * frame's part of the targets: motion is in this frame's pixels. */
+static void put_motion(struct hl_renderer *r, const struct hl_frame *f,
+                       struct hl_visible *v)
+{
+    const struct hl_item *it = &f->items[v->item];
+    const struct hl_camera *before = f->before ? f->before : &f->camera;
+    struct hl_motion_block b;
+    float proj[16], mv[16], clip[16];
+    hl_view_to_clip(r, &f->camera, false, proj);
+    hl_mul4(mv, f->camera.view, it->world);
+    hl_mul4(clip, proj, mv);
+    copy4(&b.now, clip);
+    hl_view_to_clip(r, before, false, proj);
+    hl_mul4(mv, before->view, it->world_before ? it->world_before : it->world);
+    hl_mul4(clip, proj, mv);
+    copy4(&b.before, clip);
+    v->motion = hl_arena_put(&r->arena, &b, sizeof b);
+}
+
+void hl_gather_material(struct hl_renderer *r, const struct hl_item *it,
+                        struct hl_visible *v)
 {
     struct hl_material_block b;
     const struct hl_material *m = it->material;
@@ -304,7 +316,6 @@ static void sort_visible(struct hl_visible *v, uint32_t n, bool far_first)
 static uint32_t cull(struct hl_renderer *r, const struct hl_frame *f,
                      uint32_t n, enum hl_class class)
 {
-    float aspect = (float)r->plan.width / (float)r->plan.height;
     for (uint32_t i = 0; i < f->n_items; i++) {
         const struct hl_item *it = &f->items[i];
         struct hl_visible *v = &r->visible[n];
@@ -314,7 +325,7 @@ static uint32_t cull(struct hl_renderer *r, const struct hl_frame *f,
         v->item = i;
         v->surface = it->surface;
         v->box = hl_box_world(it->world, it->bounds_min, it->bounds_max);
-        if (!hl_box_visible(&v->box, &f->camera, aspect, &v->z))
+        if (!hl_box_visible(&v->box, &r->wide, r->wide_aspect, &v->z))
             continue;
         if (class != HL_CLASS_OPAQUE) {
             /* By the depth of the centre: z is the nearest corner's. */
@@ -332,6 +343,8 @@ static void put_textures(struct hl_renderer *r, const struct hl_item *it,
     struct hl_texture_binding (*t)[HL_TEX_MESH_COUNT] = r->textures[visible];
     memset(t, 0, sizeof r->textures[visible]);
     t[1][HL_TEX_LIGHT].tex = r->target[HL_ROLE_LIGHT];
+    if (r->plan.dsf_bilinear)
+        t[1][HL_TEX_LIGHT].filter = HL_FILTER_LINEAR;
     t[1][HL_TEX_DSF].tex = r->target[HL_ROLE_DSF];
     memcpy(&t[0][HL_TEX_BASE], it->texture, sizeof it->texture);
     memcpy(&t[1][HL_TEX_BASE], it->texture, sizeof it->texture);
@@ -366,11 +379,12 @@ enum hl_result hl_frame_gather(struct hl_renderer *r, const struct hl_frame *f)
     r->lists.used = r->lists.flushed = 0;
     r->arena.full = r->lists.full = false;
     r->result = HL_OK;
-    float aspect = (float)r->plan.width / (float)r->plan.height;
-    r->grid.tan_y = f->camera.tan_half_y;
-    r->grid.tan_x = f->camera.tan_half_y * aspect;
+    hl_view_set(r, f);
     r->n_spheres = hl_lights_view(r->spheres, f->lights, f->n_lights,
-                                  &f->camera, aspect);
+                                  &r->wide, r->wide_aspect);
+    if (r->plan.dsf == HL_DSF_DARK && r->n_spheres > 0)
+        return refuse(r, "hl_frame.lights", r->spheres[0].light,
+                      "the plan was made for no lights; plan again");
     part_lights(r, f);
     r->n_opaque = cull(r, f, 0, HL_CLASS_OPAQUE);
     r->n_decals = cull(r, f, r->n_opaque, HL_CLASS_DECAL);
@@ -380,6 +394,7 @@ enum hl_result hl_frame_gather(struct hl_renderer *r, const struct hl_frame *f)
     sort_visible(r->visible + r->n_decals, r->n_visible - r->n_decals, true);
     for (uint32_t i = r->n_decals; i < r->n_visible; i++)
         r->visible[i].pattern = HL_STIPPLE_NONE;
+    r->stats.unstippled = r->n_visible - r->n_decals;
     if (r->plan.stipple && r->n_visible > r->n_decals)
         e = hl_stippling_assign(r, f);
     if (e != HL_OK)
@@ -390,7 +405,9 @@ enum hl_result hl_frame_gather(struct hl_renderer *r, const struct hl_frame *f)
         if (v->pattern == HL_STIPPLE_NONE)
             put_list(r, f, v);
         hl_gather_object(r, f, v);
-        put_material(r, &f->items[v->item], v);
+        if (r->plan.motion)
+            put_motion(r, f, v);
+        hl_gather_material(r, &f->items[v->item], v);
         put_textures(r, &f->items[v->item], i);
     }
     r->stats.items = r->n_visible;

@@ -43,8 +43,7 @@ static void object_draws(struct hl_renderer *r, const struct hl_frame *f,
         struct hl_lit_sphere *s = &r->spheres[i];
         if (!hl_sphere_touches_box(s, &r->visible[visible].box))
             continue;
-        if (r->plan.scissor && !hl_sphere_rect(&b.rect, s, &f->camera,
-                                               r->plan.width, r->plan.height))
+        if (r->plan.scissor && !hl_sphere_rect(&b.rect, s, &r->frame_span))
             continue;
         b.refs[b.n++] = i;
         if (b.n < r->plan.batch)

@@ -149,10 +149,13 @@ enum hl_result hl_frame_inspect(struct hl_renderer *r,
     if (!r || !f || !out || (unsigned)what > HL_INSPECT_REJECTS)
         return HL_ERR_INVALID;
     bool inferred = r->plan.pipeline == HL_PIPELINE_INFERRED;
-    if (what == HL_INSPECT_REJECTS && !inferred)
+    if (what == HL_INSPECT_REJECTS &&
+        (!inferred || r->plan.dsf == HL_DSF_DARK))
         return HL_ERR_UNSUPPORTED;
     const float zero[4] = { 0, 0, 0, 0 };
+    r->stippling.again = true;
     enum hl_result e = hl_frame_gather(r, f);
+    r->stippling.again = false;
     if (e == HL_OK)
         e = make_targets(r, what);
     if (e == HL_OK)

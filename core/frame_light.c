@@ -45,7 +45,7 @@ struct hl_draw *hl_draw_screen(struct hl_renderer *r, hl_prog prog,
     struct hl_draw *d = hl_draw_begin(r);
     d->prog = prog;
     d->count = 3;
-    d->scissor = *rect;
+    d->scissor = rect->width ? *rect : r->light_scissor;
     d->textures = r->light_textures;
     d->n_textures = 3;
     hl_bind_uniform(r, d, HL_SLOT_FRAME, r->frame_offset,
@@ -76,6 +76,20 @@ static uint32_t chunk_of(const struct hl_renderer *r, uint32_t t,
     return n - done < r->plan.batch ? n - done : r->plan.batch;
 }
 
+static int32_t least(uint32_t a, uint32_t b)
+{
+    return (int32_t)(a < b ? a : b);
+}
+
+static struct hl_rect tile_rect(const struct hl_tile_grid *g, uint32_t t)
+{
+    uint32_t x = t % g->nx * g->tile, y = t / g->nx * g->tile;
+    struct hl_rect rect = { (int32_t)x, (int32_t)y,
+                            least(g->tile, g->span.cols - x),
+                            least(g->tile, g->span.rows - y) };
+    return rect;
+}
+
 /* The tiles whose chunk is drawn by one program: changing programs costs
  * more than a tile's draw. Returns how many draws were made. */
 static uint32_t draw_chunks(struct hl_renderer *r, const struct hl_frame *f,
@@ -90,9 +104,7 @@ static uint32_t draw_chunks(struct hl_renderer *r, const struct hl_frame *f,
         hl_light_program(r, n, chunk > 0, &fits);
         if (fits != size)
             continue;
-        struct hl_rect rect = { (int32_t)(t % g->nx * g->tile),
-                                (int32_t)(t / g->nx * g->tile),
-                                (int32_t)g->tile, (int32_t)g->tile };
+        struct hl_rect rect = tile_rect(g, t);
         draw_batch(r, f, &rect, r->refs + at, n, chunk > 0);
         drawn++;
     }
@@ -156,8 +168,8 @@ static struct hl_rect join(struct hl_rect a, struct hl_rect b)
  * the screen, so a batch's union stays small. */
 static uint32_t cell_of(const struct hl_renderer *r, struct hl_rect b)
 {
-    uint32_t x = (uint32_t)(b.x + b.width / 2) * CELLS / (r->grid.w + 1);
-    uint32_t y = (uint32_t)(b.y + b.height / 2) * CELLS / (r->grid.h + 1);
+    uint32_t x = (uint32_t)(b.x + b.width / 2) * CELLS / (r->span.cols + 1);
+    uint32_t y = (uint32_t)(b.y + b.height / 2) * CELLS / (r->span.rows + 1);
     return y * CELLS + (y & 1 ? CELLS - 1 - x : x);
 }
 
@@ -168,8 +180,8 @@ static void draw_rects(struct hl_renderer *r, const struct hl_frame *f)
     struct hl_rect all = { 0, 0, 0, 0 }, b;
     for (uint32_t c = 0; c < CELLS * CELLS; c++)
         for (uint32_t i = 0; i < r->n_plain; i++) {
-            if (!hl_sphere_rect(&b, &r->spheres[i], &f->camera, r->grid.w,
-                                r->grid.h) || cell_of(r, b) != c)
+            if (!hl_sphere_rect(&b, &r->spheres[i], &r->span) ||
+                cell_of(r, b) != c)
                 continue;
             all = n ? join(all, b) : b;
             batch[n++] = i;
@@ -210,19 +222,22 @@ void hl_emit_light_pass(struct hl_renderer *r, const struct hl_frame *f)
 enum hl_result hl_build_tiles(struct hl_renderer *r, const struct hl_frame *f)
 {
     struct hl_tile_grid *g = &r->grid;
+    if (r->plan.light_path == HL_LIGHT_PATH_VOLUMES)
+        return HL_OK;
     g->z0 = g->z1 = NULL;
     if (r->plan.tile_depth && r->n_plain > 0) {
-        float x, y, n = f->camera.near, z = f->camera.far;
+        float x, y;
         enum hl_result e = hl_tex_read(r->device,
                                        r->target[HL_ROLE_LIGHT_DEPTH],
                                        r->depth_read,
-                                       (size_t)g->w * g->h * sizeof(float));
+                                       (size_t)r->plan.light_width *
+                                       r->plan.light_height * sizeof(float));
         if (e != HL_OK)
             return e;
-        x = r->plan.reversed_depth ? n * z / (z - n) : -n * z / (z - n);
-        y = r->plan.reversed_depth ? n / (z - n) : -z / (z - n);
-        hl_tiles_depth(r->tile_z0, r->tile_z1, r->depth_read, g->w, g->h,
-                       g->tile, x, y, r->plan.reversed_depth ? 0.0f : 1.0f);
+        hl_depth_terms(r, &f->camera, &x, &y);
+        hl_tiles_depth(r->tile_z0, r->tile_z1, g, r->depth_read,
+                       r->plan.light_width, x, y,
+                       r->plan.reversed_depth ? 0.0f : 1.0f);
         g->z0 = r->tile_z0;
         g->z1 = r->tile_z1;
     }
@@ -236,5 +251,7 @@ enum hl_result hl_build_tiles(struct hl_renderer *r, const struct hl_frame *f)
     }
     r->stats.light_peak = hl_tiles_peak(g, r->tile_first, r->refs, r->spheres,
                                         f->lights);
+    for (uint32_t i = r->n_plain; i < r->n_spheres; i++)
+        r->stats.light_peak += hl_light_peak(&f->lights[r->spheres[i].light]);
     return HL_OK;
 }

@@ -37,6 +37,11 @@ static void shift_specs(const struct hl_plan *plan, struct hl_prog_desc *p,
     spec_float(p, HL_SPEC_SHIFT_Y, -1.0f / (float)height);
 }
 
+void hl_shift_specs(const struct hl_plan *plan, struct hl_prog_desc *p)
+{
+    shift_specs(plan, p, plan->light_width, plan->light_height);
+}
+
 /* Everything of a plan that a stage which reads the L-buffer needs. */
 static void inferred_specs(const struct hl_plan *plan, struct hl_prog_desc *p)
 {
@@ -63,6 +68,8 @@ static void light_specs(const struct hl_plan *plan, struct hl_prog_desc *p,
     spec(p, HL_SPEC_FALLOFF, plan->falloff);
     spec(p, HL_SPEC_KINDS, plan->kinds);
     spec(p, HL_SPEC_BATCH, batch);
+    if (plan->brdfs)
+        spec(p, HL_SPEC_BRDFS, 1);
 }
 
 static bool is_full(const struct hl_surface *s)
@@ -95,23 +102,39 @@ static enum hl_format role_format(const struct hl_plan *plan, enum hl_role role)
 
 /* ---- meshes ------------------------------------------------------------- */
 
+/* Stages by what they write: [motion][exponent][full]. */
+static enum hl_shader gbuffer_stage(bool motion, bool exponent, bool full)
+{
+    static const enum hl_shader stages[2][2][2] = {
+        { { HL_SHADER_GBUFFER_PLAIN_FRAG, HL_SHADER_GBUFFER_FULL_FRAG },
+          { HL_SHADER_GBUFFER_PLAIN_EXP_FRAG,
+            HL_SHADER_GBUFFER_FULL_EXP_FRAG } },
+        { { HL_SHADER_GBUFFER_PLAIN_MOTION_FRAG,
+            HL_SHADER_GBUFFER_FULL_MOTION_FRAG },
+          { HL_SHADER_GBUFFER_PLAIN_EXP_MOTION_FRAG,
+            HL_SHADER_GBUFFER_FULL_EXP_MOTION_FRAG } } };
+    return stages[motion][exponent][full];
+}
+
 static void to_gbuffer(const struct hl_plan *plan, struct hl_prog_desc *p,
                        bool full)
 {
-    bool channel = plan->specular == HL_SPECULAR_CHANNEL;
+    bool exponent = hl_plan_target(plan, HL_ROLE_EXPONENT) != NULL;
     p->label = "geometry";
     p->vertex.builtin = full ? HL_SHADER_MESH_GBUFFER_FULL_VERT
                              : HL_SHADER_MESH_GBUFFER_VERT;
-    if (channel)
-        p->fragment.builtin = full ? HL_SHADER_GBUFFER_FULL_EXP_FRAG
-                                   : HL_SHADER_GBUFFER_PLAIN_EXP_FRAG;
-    else
-        p->fragment.builtin = full ? HL_SHADER_GBUFFER_FULL_FRAG
-                                   : HL_SHADER_GBUFFER_PLAIN_FRAG;
-    p->n_colors = channel ? 3 : 2;
-    p->color[0] = role_format(plan, HL_ROLE_NORMAL);
-    p->color[1] = role_format(plan, HL_ROLE_DSF);
-    p->color[2] = role_format(plan, HL_ROLE_EXPONENT);
+    if (plan->motion)
+        p->vertex.builtin = full ? HL_SHADER_MESH_GBUFFER_FULL_MOTION_VERT
+                                 : HL_SHADER_MESH_GBUFFER_MOTION_VERT;
+    p->fragment.builtin = gbuffer_stage(plan->motion, exponent, full);
+    p->color[p->n_colors++] = role_format(plan, HL_ROLE_NORMAL);
+    p->color[p->n_colors++] = role_format(plan, HL_ROLE_DSF);
+    if (exponent)
+        p->color[p->n_colors++] = role_format(plan, HL_ROLE_EXPONENT);
+    if (plan->motion)
+        p->color[p->n_colors++] = role_format(plan, HL_ROLE_MOTION);
+    if (plan->brdfs)
+        spec(p, HL_SPEC_BRDFS, 1);
     p->depth = role_format(plan, HL_ROLE_LIGHT_DEPTH);
     packed_specs(plan, p);
     shift_specs(plan, p, plan->light_width, plan->light_height);
@@ -128,10 +151,28 @@ static void to_frame(const struct hl_plan *plan, struct hl_prog_desc *p)
 
 static enum hl_shader material_stage(const struct hl_plan *plan, bool full)
 {
-    if (plan->float_taps)
-        return full ? HL_SHADER_MATERIAL_FULL_TAPS_FRAG
-                    : HL_SHADER_MATERIAL_PLAIN_TAPS_FRAG;
-    return full ? HL_SHADER_MATERIAL_FULL_FRAG : HL_SHADER_MATERIAL_PLAIN_FRAG;
+    static const enum hl_shader stage[2][3][2] = {
+        { { HL_SHADER_MATERIAL_PLAIN_FRAG, HL_SHADER_MATERIAL_FULL_FRAG },
+          { HL_SHADER_MATERIAL_PLAIN_FILTER_FRAG,
+            HL_SHADER_MATERIAL_FULL_FILTER_FRAG },
+          { HL_SHADER_MATERIAL_PLAIN_TAPS_FRAG,
+            HL_SHADER_MATERIAL_FULL_TAPS_FRAG } },
+        { { HL_SHADER_MATERIAL_PLAIN_CENTROID_FRAG,
+            HL_SHADER_MATERIAL_FULL_CENTROID_FRAG },
+          { HL_SHADER_MATERIAL_PLAIN_FILTER_CENTROID_FRAG,
+            HL_SHADER_MATERIAL_FULL_FILTER_CENTROID_FRAG },
+          { HL_SHADER_MATERIAL_PLAIN_TAPS_CENTROID_FRAG,
+            HL_SHADER_MATERIAL_FULL_TAPS_CENTROID_FRAG } } };
+    int numbers = plan->float_taps ? 2 : plan->dsf_bilinear ? 1 : 0;
+    return stage[plan->centroid][numbers][full];
+}
+
+static enum hl_shader material_vertex(const struct hl_plan *plan, bool full)
+{
+    if (plan->centroid)
+        return full ? HL_SHADER_MESH_UV_ID_CENTROID_VERT
+                    : HL_SHADER_MESH_MATERIAL_CENTROID_VERT;
+    return full ? HL_SHADER_MESH_UV_ID_VERT : HL_SHADER_MESH_MATERIAL_VERT;
 }
 
 static enum hl_shader reject_stage(const struct hl_plan *plan, bool full)
@@ -147,8 +188,7 @@ static void to_material(const struct hl_plan *plan, struct hl_prog_desc *p,
 {
     to_frame(plan, p);
     p->label = "material";
-    p->vertex.builtin = full ? HL_SHADER_MESH_UV_ID_VERT
-                             : HL_SHADER_MESH_MATERIAL_VERT;
+    p->vertex.builtin = material_vertex(plan, full);
     p->fragment.builtin = material_stage(plan, full);
     if (s->own_material) {
         p->vertex.builtin = HL_SHADER_MESH_OWN_VERT;
@@ -217,6 +257,19 @@ static void to_inspect(const struct hl_plan *plan, struct hl_prog_desc *p,
     }
 }
 
+static void to_shadow_map(const struct hl_plan *plan, struct hl_prog_desc *p,
+                          bool masked)
+{
+    const struct hl_plan_target *t = hl_plan_target(plan, HL_ROLE_SHADOW_MAP);
+    p->label = "shadow map";
+    p->vertex.builtin = masked ? HL_SHADER_MESH_UV_ID_VERT
+                               : HL_SHADER_MESH_ID_VERT;
+    if (masked)
+        p->fragment.builtin = HL_SHADER_MASK_FRAG;
+    p->depth = t->format;
+    shift_specs(plan, p, t->width, t->height);
+}
+
 static bool writes_depth(int kind)
 {
     return kind != PROG_MORE && kind != PROG_BLENDED &&
@@ -261,6 +314,8 @@ enum hl_result hl_surface_program(struct hl_renderer *r, uint32_t surface,
         to_material(plan, &p, s, is_full(s));
     else if (kind == PROG_BASE || kind == PROG_MORE || kind == PROG_BLENDED)
         to_forward(plan, &p, is_full(s), kind);
+    else if (kind == PROG_SHADOW_DEPTH)
+        to_shadow_map(plan, &p, s->masked);
     else
         to_inspect(plan, &p, s, kind, r->count_format);
     if (kind == PROG_MORE || kind == PROG_COUNT_BASE ||
@@ -300,29 +355,70 @@ static bool is_light_stage(enum hl_shader stage)
            stage == HL_SHADER_LIGHT_TILES_FRAG;
 }
 
+/* A copy of depth is a number, however the target itself is read. */
+static uint32_t depth_read(const struct hl_plan *plan, enum hl_shader fragment)
+{
+    bool copied = fragment != HL_SHADER_DEPTH_COPY_FRAG &&
+                  hl_plan_target(plan, HL_ROLE_DEPTH_COPY);
+    return copied ? HL_DEPTH_READ_FLOAT : plan->depth_read;
+}
+
+static void map_specs(const struct hl_plan *plan, struct hl_prog_desc *p)
+{
+    const struct hl_plan_target *t = hl_plan_target(plan, HL_ROLE_SHADOW_MAP);
+    uint32_t faces = t->width > plan->shadow_size ? 6 : 1;
+    if (plan->depth_read == HL_DEPTH_READ_BARG)
+        faces |= HL_MAP_BARG;
+    spec_float(p, HL_SPEC_MAP_SIZE, (float)plan->shadow_size);
+    spec(p, HL_SPEC_MAP_FACES, faces);
+}
+
+static void to_screen(const struct hl_plan *plan, struct hl_prog_desc *p,
+                      enum hl_shader fragment, enum hl_format color,
+                      enum hl_blend blend, uint32_t batch)
+{
+    memset(p, 0, sizeof *p);
+    p->label = "light";
+    p->vertex.builtin = fragment == HL_SHADER_LIGHT_FLAT_FRAG
+                        ? HL_SHADER_SCREEN_FLAT_VERT : HL_SHADER_SCREEN_VERT;
+    p->fragment.builtin = fragment;
+    p->n_colors = 1;
+    p->color[0] = color;
+    p->blend = blend;
+    light_specs(plan, p, batch);
+    packed_specs(plan, p);
+    hl_shift_specs(plan, p);
+    spec(p, HL_SPEC_DEPTH_READ, depth_read(plan, fragment));
+    spec_float(p, HL_SPEC_LIGHT_OUT, plan->light_out);
+    spec_float(p, HL_SPEC_LIGHT_WIDTH, (float)plan->light_width);
+    spec_float(p, HL_SPEC_LIGHT_HEIGHT, (float)plan->light_height);
+    if (fragment == HL_SHADER_LIGHT_MAP_FRAG)
+        map_specs(plan, p);
+}
+
 enum hl_result hl_screen_program(struct hl_renderer *r,
                                  enum hl_shader fragment,
                                  enum hl_format color, enum hl_blend blend,
                                  uint32_t batch, hl_prog *out)
 {
     struct hl_prog_desc p;
-    memset(&p, 0, sizeof p);
-    p.label = "light";
-    p.vertex.builtin = fragment == HL_SHADER_LIGHT_FLAT_FRAG
-                       ? HL_SHADER_SCREEN_FLAT_VERT : HL_SHADER_SCREEN_VERT;
-    p.fragment.builtin = fragment;
-    p.n_colors = 1;
-    p.color[0] = color;
-    p.blend = blend;
+    to_screen(&r->plan, &p, fragment, color, blend, batch);
     if (is_light_stage(fragment))
         bind_depth(&r->plan, &p, HL_PASS_LIGHT);
-    light_specs(&r->plan, &p, batch);
-    packed_specs(&r->plan, &p);
-    shift_specs(&r->plan, &p, r->plan.light_width, r->plan.light_height);
-    spec(&p, HL_SPEC_DEPTH_READ, r->plan.depth_read);
-    spec_float(&p, HL_SPEC_LIGHT_OUT, r->plan.light_out);
-    spec_float(&p, HL_SPEC_LIGHT_WIDTH, (float)r->plan.light_width);
-    spec_float(&p, HL_SPEC_LIGHT_HEIGHT, (float)r->plan.light_height);
+    return hl_prog_create(r->device, out, &p);
+}
+
+enum hl_result hl_light_stencil_program(struct hl_renderer *r,
+                                        enum hl_pass_role pass,
+                                        const struct hl_stencil_face *face,
+                                        hl_prog *out)
+{
+    struct hl_prog_desc p;
+    to_screen(&r->plan, &p, r->plan.light_flat ? HL_SHADER_LIGHT_FLAT_FRAG
+                                               : HL_SHADER_LIGHT_BATCH_FRAG,
+              role_format(&r->plan, HL_ROLE_LIGHT), HL_BLEND_ADD, 1);
+    bind_depth(&r->plan, &p, pass);
+    p.stencil.front = p.stencil.back = *face;
     return hl_prog_create(r->device, out, &p);
 }
 
@@ -359,7 +455,8 @@ static enum hl_result make_light_programs(struct hl_renderer *r)
     if (p->light_path == HL_LIGHT_PATH_LISTS)
         return hl_screen_program(r, HL_SHADER_LIGHT_TILES_FRAG, f,
                                  HL_BLEND_OFF, 0, &r->list_prog);
-    bool rects = p->light_path == HL_LIGHT_PATH_RECTS;
+    bool rects = p->light_path == HL_LIGHT_PATH_RECTS ||
+                 p->light_path == HL_LIGHT_PATH_VOLUMES;
     for (uint32_t i = 0; i < (rects ? 1 : LIGHT_SIZES); i++)
         for (int add = rects ? 1 : 0; add < 2; add++) {
             enum hl_result e = hl_screen_program(
@@ -413,13 +510,16 @@ static enum hl_result make_surface_programs(struct hl_renderer *r, uint32_t i)
         return e == HL_OK && r->plan.stipple
                ? make_two(r, i, PROG_STIPPLE_GBUFFER) : e;
     }
+    if (r->plan.dsf == HL_DSF_DARK)
+        return hl_surface_program(r, i, PROG_MATERIAL,
+                                  &r->prog[i][PROG_MATERIAL]);
     return make_two(r, i, first);
 }
 
 enum hl_result hl_programs_make(struct hl_renderer *r)
 {
     enum hl_result e = HL_OK;
-    if (r->plan.pipeline == HL_PIPELINE_INFERRED) {
+    if (hl_plan_pass(&r->plan, HL_PASS_LIGHT)) {
         e = make_depth_copy(r);
         if (e == HL_OK)
             e = make_light_programs(r);

@@ -48,7 +48,7 @@ static size_t tile_bytes_of(const struct hl_renderer_desc *d)
            ? 0x4000000 : tiles * blocks * HL_LIGHTS_BYTES;
 }
 
-/* Objects and materials: 768 bytes an item with alignment; light data: at
+/* Objects, motion and materials: 768 bytes an item with alignment; light data: at
  * most every light for every item, and 64 MiB where that would be more. */
 static size_t frame_bytes_of(const struct hl_renderer_desc *d)
 {
@@ -95,6 +95,7 @@ static void carve_all(struct hl_carve *c, struct hl_renderer *r,
     r->lists.bytes = hl_carve(c, r->lists.size, 1);
     hl_stippling_carve(c, r, d);
     hl_volumes_carve(c, r, d);
+    hl_maps_carve(c, r, d);
 }
 
 static bool desc_good(const struct hl_renderer_desc *d)
@@ -102,6 +103,7 @@ static bool desc_good(const struct hl_renderer_desc *d)
     return d && d->plan && d->plan->pipeline != HL_PIPELINE_AUTO &&
            d->max_items > 0 && d->max_items <= 0x1000000 &&
            lights_of(d) <= 0x1000000 && d->n_surfaces <= 0x10000 &&
+           d->shadow_indices <= 0x10000000 &&
            (d->n_surfaces == 0 || d->surfaces);
 }
 
@@ -151,7 +153,7 @@ static enum hl_result make_buffers(struct hl_renderer *r)
     bool lists = r->plan.light_path == HL_LIGHT_PATH_LISTS;
     bool blended = false;
     for (uint32_t i = 0; i < r->n_surfaces; i++)
-        blended |= r->surfaces[i].blended;
+        blended |= hl_surface_class(r, i) == HL_CLASS_BLENDED;
     for (int i = 0; i < FRAMES; i++) {
         enum hl_result e = hl_buf_create(r->device, &r->uniform[i], &u);
         if (e == HL_OK && (lists || blended))
@@ -192,10 +194,8 @@ static void set_up(struct hl_renderer *r, struct hl_device *device,
     r->arena.align = caps->uniform_align ? caps->uniform_align : 1;
     r->lists.align = 16;
     hl_inspect_set_up(r);
-    tiles_of(&r->plan, &r->grid.nx, &r->grid.ny);
+    tiles_of(&r->plan, &r->grid.nx, &r->grid.ny);  /* at most               */
     r->grid.tile = r->plan.tile ? r->plan.tile : 32;
-    r->grid.w = r->plan.light_width;
-    r->grid.h = r->plan.light_height;
 }
 
 enum hl_result hl_renderer_create(struct hl_renderer **out,

@@ -113,19 +113,32 @@ static int32_t clamp_int(float x, float high)
     return (int32_t)(x < 0 ? 0 : x > high ? high : x);
 }
 
-bool hl_sphere_rect(struct hl_rect *out, const struct hl_lit_sphere *s,
-                    const struct hl_camera *cam, uint32_t w, uint32_t h)
+struct hl_span hl_span_whole(uint32_t w, uint32_t h,
+                             const struct hl_camera *cam, float aspect)
 {
-    float tan_y = cam->tan_half_y;
-    float tan_x = tan_y * (float)w / (float)h;
-    float sx = (float)w * 0.5f / tan_x, sy = (float)h * 0.5f / tan_y;
-    float fw = (float)w, fh = (float)h;
+    struct hl_span s;
+    memset(&s, 0, sizeof s);
+    s.w = (float)w;
+    s.h = (float)h;
+    s.cols = w;
+    s.rows = h;
+    s.tan_y = cam->tan_half_y;
+    s.tan_x = cam->tan_half_y * aspect;
+    return s;
+}
+
+bool hl_sphere_rect(struct hl_rect *out, const struct hl_lit_sphere *s,
+                    const struct hl_span *p)
+{
+    float sx = p->w * 0.5f / p->tan_x, cx = p->w * 0.5f + p->jx;
+    float sy = p->h * 0.5f / p->tan_y, cy = p->h * 0.5f + p->jy;
+    float fw = (float)p->cols, fh = (float)p->rows;
     /* A quarter texel more than the bounds: centres of texels are half a
      * texel in, so no lit centre is lost to rounding. */
-    int32_t x0 = clamp_int(floorf(fw * 0.5f + s->x0 * sx - 0.25f), fw);
-    int32_t x1 = clamp_int(ceilf(fw * 0.5f + s->x1 * sx + 0.25f), fw);
-    int32_t y0 = clamp_int(floorf(fh * 0.5f - s->y1 * sy - 0.25f), fh);
-    int32_t y1 = clamp_int(ceilf(fh * 0.5f - s->y0 * sy + 0.25f), fh);
+    int32_t x0 = clamp_int(floorf(cx + s->x0 * sx - 0.25f), fw);
+    int32_t x1 = clamp_int(ceilf(cx + s->x1 * sx + 0.25f), fw);
+    int32_t y0 = clamp_int(floorf(cy - s->y1 * sy - 0.25f), fh);
+    int32_t y1 = clamp_int(ceilf(cy - s->y0 * sy + 0.25f), fh);
     out->x = x0;
     out->y = y0;
     out->width = x1 - x0;

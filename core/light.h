@@ -24,14 +24,20 @@ const char *hl_light_check(const struct hl_light *);
 /* Most that a light can add to a channel of D or S at any point. */
 float hl_light_peak(const struct hl_light *);
 
-/* What of the slopes a picture spans: pixel p, y down, sees slope
+/* How the camera's picture lies on a target: pixel p, y down, sees slope
  * x = tan_x (2 (p.x - jx) / w - 1), y = tan_y (1 - 2 (p.y - jy) / h). w and h
- * may have fractions: the part of a target of cols x rows pixels that is
- * drawn ends in one. */
+ * may have fractions, where the picture ends inside a pixel; what is drawn
+ * are cols x rows pixels from the target's corner, which may be a few more. */
 struct hl_span {
     float w, h, jx, jy;      /* pixels                                       */
-    uint32_t cols, rows;     /* pixels that are drawn: of the whole target   */
+    float tan_x, tan_y;      /* slopes at the picture's right and upper edge */
+    uint32_t cols, rows;
 };
+
+/* A picture that fills a target of w x h pixels; aspect = width / height of
+ * what the camera sees, which may differ from w / h. No jitter. */
+struct hl_span hl_span_whole(uint32_t w, uint32_t h, const struct hl_camera *,
+                             float aspect);
 
 /* Lights that can add anything to what the camera sees, in input order.
  * aspect = width / height. Returns how many were written to out (at most
@@ -40,9 +46,9 @@ uint32_t hl_lights_view(struct hl_lit_sphere *out, const struct hl_light *,
                         uint32_t n_lights, const struct hl_camera *,
                         float aspect);
 
-/* Pixels of a sphere's bounds on a target of w x h texels; false: none. */
+/* Pixels of a sphere's bounds, of those that are drawn; false: none. */
 bool hl_sphere_rect(struct hl_rect *out, const struct hl_lit_sphere *,
-                    const struct hl_camera *, uint32_t w, uint32_t h);
+                    const struct hl_span *);
 
 /* World box of a model-space box. */
 struct hl_box hl_box_world(const float world[16], const float min[3],
@@ -62,10 +68,9 @@ uint32_t hl_light_write(hl_vec4 *out, const struct hl_light *,
 /* ---- tiles ---------------------------------------------------------- */
 
 struct hl_tile_grid {
-    uint32_t w, h;           /* texels of the target                         */
+    struct hl_span span;
     uint32_t tile;           /* texels a side                                */
-    uint32_t nx, ny;
-    float tan_x, tan_y;
+    uint32_t nx, ny;         /* that cover span.cols x span.rows             */
     /* nx * ny nearest and farthest depths, metres; z0 > z1: nothing there.
      * NULL: not known. */
     const float *z0, *z1;
@@ -79,10 +84,10 @@ uint32_t hl_tiles_fill(const struct hl_tile_grid *,
                        const struct hl_lit_sphere *, uint32_t n,
                        uint32_t *first, uint32_t *refs, uint32_t max_refs);
 
-/* Nearest and farthest depth a tile of a depth buffer d (w x h floats):
- * z = a / (d + b); texels at the clear value are background. */
-void hl_tiles_depth(float *z0, float *z1, const float *d, uint32_t w,
-                    uint32_t h, uint32_t tile, float a, float b,
+/* Nearest and farthest depth a tile of a depth buffer d (rows of `width`
+ * floats): z = a / (d + b); texels at the clear value are background. */
+void hl_tiles_depth(float *z0, float *z1, const struct hl_tile_grid *,
+                    const float *d, uint32_t width, float a, float b,
                     float clear);
 
 /* Bound of summed light at any point: the largest sum, over the tiles'

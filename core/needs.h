@@ -100,6 +100,12 @@ struct hl_needs {
     uint32_t n_objects, n_triangles, n_lights;
     float lights_per_pixel;        /* mean over the screen, by light bounds  */
     float lights_per_object;       /* mean lights that touch an object       */
+    /* Forward draws of eight lights beyond an object's first: how many, their
+     * triangles, and their fragments a frame pixel; and the triangles and
+     * fragments of one draw a light and object. 0: estimated from the means
+     * above. */
+    float further_draws, further_triangles, further_cover;
+    float pair_triangles, pair_cover;
     uint32_t n_regions;            /* object regions: sum of normal groups   */
     uint32_t lights;               /* HL_LIGHTS_*; 0 = SMOOTH                */
     enum hl_specular_need specular;
@@ -113,7 +119,8 @@ struct hl_needs {
                                     * 0 = unknown                            */
     enum hl_shadows shadows;       /* what lights with hl_light.shadow get   */
     uint32_t n_shadow_lights;
-    bool shadow_points;            /* some of them are point lights          */
+    bool shadow_points;            /* some of them are point lights, or spots
+                                    * of 1.25 radians (HL_SHADOW_WIDE) or more */
     bool motion;                   /* a motion vector channel is wanted      */
     bool brdfs;                    /* some material has hl_material.brdf > 0 */
     bool light_depth_bound;        /* the light pass tests depth or stencil

@@ -6,6 +6,10 @@
 #include "core/plan.h"
 
 /* Needs with every default filled in. */
+/* Fragments a pixel that a pass shades whose draws are sorted front to back
+ * and by surface: 0.90 to 1.05 in the built-in scenes, counted. */
+#define HL_OVERDRAW 1.05
+
 struct hl_ask {
     struct hl_needs n;
     const struct hl_caps *caps;
@@ -37,13 +41,35 @@ enum hl_format hl_plan_depth_format(const struct hl_caps *, int use,
 enum hl_refusal hl_plan_common(struct hl_plan *, const struct hl_ask *);
 void hl_plan_finish(struct hl_plan *, const struct hl_ask *, double cost_ns);
 
+/* Pixels that stages run for in a pass over all of the frame, samples of edges
+ * included. */
+double hl_plan_shaded_pixels(const struct hl_ask *);
+
 /* pipe_channels.c, pipe_dsf.c, pipe_stipple.c, pipe_shadow.c: parts of the
  * inferred pipeline's plan. Channels go before the light path, DSF after all
  * targets are there. */
 enum hl_refusal hl_plan_channels(struct hl_plan *, const struct hl_ask *);
 enum hl_refusal hl_plan_translucency(struct hl_plan *, const struct hl_ask *);
 enum hl_refusal hl_plan_shadows(struct hl_plan *, const struct hl_ask *);
+/* Does the plan draw stencil volumes, of lights or of shadows? */
+bool hl_plan_stencil(const struct hl_plan *, const struct hl_ask *);
+/* Format of LIGHT_DEPTH, as hl_plan_depth_format; with a stencil where volumes
+ * need one. */
+enum hl_format hl_plan_light_depth(const struct hl_plan *,
+                                   const struct hl_ask *, int use,
+                                   const struct hl_profile_format **row);
+/* The pass of lights with shadows, where there are shadows: after LIGHT. */
+void hl_plan_shadowed_pass(struct hl_plan *);
+/* pipe_map.c: by shadow maps; their passes go after LIGHT, when the L-buffer's
+ * target is there. */
+enum hl_refusal hl_plan_shadow_maps(struct hl_plan *, const struct hl_ask *);
+void hl_plan_map_passes(struct hl_plan *, const struct hl_ask *);
+double hl_plan_map_cost(const struct hl_plan *, const struct hl_ask *);
+/* Nanoseconds of all that shadows add. */
+double hl_plan_shadow_cost(const struct hl_plan *, const struct hl_ask *);
 void hl_plan_dsf(struct hl_plan *, const struct hl_ask *);
+/* pipe_centroid.c: after the DSF. */
+void hl_plan_centroid(struct hl_plan *, const struct hl_ask *);
 
 /* pipe_light.c: how the light pass finds its lights, giving nanoseconds, and
  * the L-buffer. */
@@ -75,7 +101,8 @@ float hl_plan_pair_steps(uint32_t two16);
 /* Scales of an L-buffer of fixed range, 0 < range; gives its error. */
 float hl_plan_light_range(struct hl_plan *, const struct hl_ask *,
                           const struct hl_profile_format *, uint32_t blends);
-/* Decals; `normal` NONE: there is no normal target. */
+/* Decals, by what the geometry pass has for targets; `normal` NONE: there is
+ * no normal target. */
 void hl_plan_decals(struct hl_plan *, const struct hl_ask *,
                     enum hl_format normal);
 /* The light pass's depth: in place, bound as well, or copied. Adds the copy's

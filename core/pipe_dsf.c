@@ -2,6 +2,60 @@
 /* The discontinuity sensitive filter of the material pass. */
 #include "core/pipe.h"
 
+/* Taps are compared with the surface; EXACT has one, OFF takes all. */
+static bool rejects(const struct hl_plan *p)
+{
+    return p->dsf == HL_DSF_SLOPE || p->dsf == HL_DSF_CONSTANT;
+}
+
+static void choose_fill(struct hl_plan *p, const struct hl_ask *ask)
+{
+    if (!rejects(p))
+        return;
+    p->fill_nearest = ask->n.fill != HL_FILL_BILINEAR;
+    hl_plan_why(p, HL_WHY_FILL, p->fill_nearest ? 1 : 0, 0, 0, 0);
+}
+
+/* Can the L-buffer be sampled as numbers and filtered? */
+static bool can_filter(const struct hl_ask *ask,
+                       const struct hl_plan_target *light)
+{
+    return ask->caps->format[light->format].use & HL_USE_LINEAR;
+}
+
+/* Nanoseconds a pixel for its light: four fetches, or one filtered where no
+ * tap is rejected. */
+static void fetch_costs(const struct hl_plan *p, const struct hl_ask *ask,
+                        double *gathered, double *filtered)
+{
+    const struct hl_cost_model *c = &ask->caps->cost;
+    (void)p;
+    *gathered = 4 * (double)c->fetch_ns;
+    *filtered = *gathered;
+}
+
+/* AUTO leaves machines that sample words alone: stages of an engine's own are
+ * made for one or the other (inferred.glsl). */
+static void choose_fetch(struct hl_plan *p, const struct hl_ask *ask)
+{
+    double gathered, filtered;
+    struct hl_plan_target *light = NULL;
+    for (uint32_t i = 0; i < p->n_targets; i++)
+        if (p->target[i].role == HL_ROLE_LIGHT)
+            light = &p->target[i];
+    if (!light || p->dsf == HL_DSF_EXACT || !can_filter(ask, light))
+        return;
+    fetch_costs(p, ask, &gathered, &filtered);
+    p->dsf_bilinear = ask->n.fetch == HL_FETCH_BILINEAR ||
+                      (ask->n.fetch == HL_FETCH_AUTO && p->float_taps &&
+                       filtered < gathered);
+    /* As numbers, which words were in place of. */
+    if (p->dsf_bilinear && !p->float_taps)
+        light->sample_as = HL_FORMAT_NONE;
+    hl_plan_why(p, HL_WHY_FETCH, p->dsf_bilinear ? 1 : 0, (float)gathered,
+                (float)filtered, 0);
+}
+
 void hl_plan_dsf(struct hl_plan *p, const struct hl_ask *ask)
 {
     const struct hl_needs *n = &ask->n;
@@ -15,7 +69,8 @@ void hl_plan_dsf(struct hl_plan *p, const struct hl_ask *ask)
     } else if (n->dsf == HL_DSF_CONSTANT_TAU) {
         p->dsf = HL_DSF_CONSTANT;
         hl_plan_why(p, HL_WHY_DSF_CONSTANT, p->dsf_tau, 0, 0, 0);
-    } else if (same && n->samples <= 1) {
+    /* Under stippled surfaces the one sample may be another surface's. */
+    } else if (same && n->samples <= 1 && !p->stipple) {
         p->dsf = HL_DSF_EXACT;
         hl_plan_why(p, HL_WHY_DSF_EXACT, 0, 0, 0, 0);
     } else {
@@ -23,4 +78,7 @@ void hl_plan_dsf(struct hl_plan *p, const struct hl_ask *ask)
         hl_plan_why(p, HL_WHY_DSF_SLOPE, p->dsf_k, p->dsf_c,
                     n->far / hl_plan_pair_steps(p->two16), 0);
     }
+    choose_fill(p, ask);
+    choose_fetch(p, ask);
+    hl_plan_centroid(p, ask);
 }

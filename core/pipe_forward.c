@@ -25,23 +25,36 @@ static uint32_t at_least_one(uint32_t blends) { return blends ? blends : 1; }
 
 static uint32_t up(float x) { return x > 0 ? (uint32_t)ceilf(x) : 0; }
 
-/* Every draw of an object pays its vertices and its pixels again. Pixels:
- * half as many again as the frame has, for overdraw of the first draws. */
-static double forward_cost(const struct hl_ask *ask, double draws_an_object,
-                           double lights_shaded)
+/* What is drawn once: all objects, each with `lights` in its draw. */
+static double base_cost(const struct hl_ask *ask, double lights)
 {
     const struct hl_cost_model *c = &ask->caps->cost;
-    double pixels = (double)ask->n.width * ask->n.height *
-                    (1.0 + 0.06 * (ask->n.samples - 1));
-    double objects = ask->n.n_objects;
-    return draws_an_object * objects * (double)c->draw_ns +
-           draws_an_object * ask->n.n_triangles * (double)c->vertex_ns +
-           1.5 * pixels * draws_an_object * (double)(c->pixel_ns + c->blend_ns)
-           + 1.5 * pixels * lights_shaded * (double)c->light_ns;
+    return (double)ask->n.n_objects * (double)c->draw_ns +
+           (double)ask->n.n_triangles * (double)c->vertex_ns +
+           HL_OVERDRAW * hl_plan_shaded_pixels(ask) *
+           ((double)c->pixel_ns + lights * (double)c->light_ns);
+}
+
+/* Draws on top of it, blended where depths are equal; `cover`: fragments a
+ * pixel. */
+static double further_cost(const struct hl_ask *ask, double draws,
+                           double triangles, double cover, double lights)
+{
+    const struct hl_cost_model *c = &ask->caps->cost;
+    return draws * (double)c->draw_ns + triangles * (double)c->vertex_ns +
+           cover * hl_plan_shaded_pixels(ask) *
+           ((double)(c->pixel_ns + c->blend_ns) +
+            lights * (double)c->light_ns);
+}
+
+/* A number of the needs, or an estimate where it is unknown. */
+static double known(float x, double estimate)
+{
+    return x > 0 ? (double)x : estimate;
 }
 
 static enum hl_refusal finish(struct hl_plan *p, const struct hl_ask *ask,
-                              double draws, double lights)
+                              double draws, double cost)
 {
     uint32_t w, h;
     const struct hl_plan_target *t = hl_plan_target(p, HL_ROLE_COLOR);
@@ -49,7 +62,7 @@ static enum hl_refusal finish(struct hl_plan *p, const struct hl_ask *ask,
     p->light_error = t->error;
     p->moved_per_pixel = (float)(texel * 2.0 * draws * p->samples);
     hl_plan_decals(p, ask, HL_FORMAT_NONE);
-    hl_plan_finish(p, ask, forward_cost(ask, draws, lights));
+    hl_plan_finish(p, ask, cost);
     return hl_plan_edram(p, ask, &w, &h);
 }
 
@@ -75,8 +88,14 @@ enum hl_refusal hl_plan_forward(struct hl_plan *p, const struct hl_ask *ask)
     hl_plan_why(p, p->specular ? HL_WHY_EXPONENT_CONSTANT
                                : HL_WHY_EXPONENT_NONE, p->exponent, 0, 0, 0);
     forward_pass(p, batch);
-    double draws = 1.0 + extra;
-    return finish(p, ask, draws, draws * batch);
+    double objects = ask->n.n_objects, triangles = ask->n.n_triangles;
+    double cost = base_cost(ask, batch) +
+                  further_cost(ask, known(ask->n.further_draws,
+                                          extra * objects),
+                               known(ask->n.further_triangles,
+                                     extra * triangles),
+                               known(ask->n.further_cover, extra), batch);
+    return finish(p, ask, 1.0 + extra, cost);
 }
 
 enum hl_refusal hl_plan_multipass(struct hl_plan *p, const struct hl_ask *ask)
@@ -96,7 +115,15 @@ enum hl_refusal hl_plan_multipass(struct hl_plan *p, const struct hl_ask *ask)
     hl_plan_why(p, p->scissor ? HL_WHY_SCISSOR : HL_WHY_NO_SCISSOR, 0, 0, 0,
                 0);
     forward_pass(p, 1);
-    double lights = p->scissor ? (double)ask->per_pixel
-                               : (double)ask->per_object;
-    return finish(p, ask, 1.0 + (double)ask->per_object, lights);
+    double per_object = (double)ask->per_object;
+    /* Scissored: no more than the lights' rectangles. */
+    double cover = known(ask->n.pair_cover, per_object);
+    if (p->scissor && cover > (double)ask->per_pixel)
+        cover = (double)ask->per_pixel;
+    double cost = base_cost(ask, 0) +
+                  further_cost(ask, per_object * ask->n.n_objects,
+                               known(ask->n.pair_triangles,
+                                     per_object * ask->n.n_triangles),
+                               cover, 1);
+    return finish(p, ask, 1.0 + per_object, cost);
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Zlib */
 /* Inferred lighting (Kircher, Lawrance 2009): geometry and light passes at
  * L-buffer size, material pass at frame size through the DSF. */
+#include <string.h>
 #include "core/pipe.h"
 #include "core/vec.h"
 
@@ -61,8 +62,7 @@ static enum hl_refusal choose_gbuffer(struct hl_plan *p,
     enum hl_format normal = row ? row->format
                             : c->two16[0].format ? HL_FORMAT_NONE
                             : hl_format_pick(ask->caps, two16, use, 1);
-    enum hl_format depth = hl_plan_depth_format(ask->caps, use, 1,
-                                                &depth_row);
+    enum hl_format depth = hl_plan_light_depth(p, ask, use, &depth_row);
     if (normal == HL_FORMAT_NONE)
         return HL_REFUSED_NORMAL_FORMAT;
     if (depth == HL_FORMAT_NONE)
@@ -94,10 +94,13 @@ static enum hl_refusal add_passes(struct hl_plan *p, const struct hl_ask *ask)
     enum hl_compare nearer = p->reversed_depth ? HL_COMPARE_GREATER
                                                : HL_COMPARE_LESS;
     struct hl_plan_pass *g = hl_plan_add_pass(p, HL_PASS_GEOMETRY);
-    g->color[0] = HL_ROLE_NORMAL;
-    g->color[1] = HL_ROLE_DSF;
-    if (p->specular == HL_SPECULAR_CHANNEL)
-        g->color[2] = HL_ROLE_EXPONENT;
+    uint32_t colors = 0;
+    g->color[colors++] = HL_ROLE_NORMAL;
+    g->color[colors++] = HL_ROLE_DSF;
+    if (hl_plan_target(p, HL_ROLE_EXPONENT))
+        g->color[colors++] = HL_ROLE_EXPONENT;
+    if (p->motion)
+        g->color[colors++] = HL_ROLE_MOTION;
     g->depth = HL_ROLE_LIGHT_DEPTH;
     g->depth_write = true;
     g->depth_test = nearer;
@@ -106,16 +109,22 @@ static enum hl_refusal add_passes(struct hl_plan *p, const struct hl_ask *ask)
         return r;
     struct hl_plan_pass *l = hl_plan_add_pass(p, HL_PASS_LIGHT);
     /* What is tested, and how, is the light volumes' own. */
-    if (ask->n.light_depth_bound) {
+    bool volumes = p->light_path == HL_LIGHT_PATH_VOLUMES;
+    if (ask->n.light_depth_bound || volumes) {
         l->depth = HL_ROLE_LIGHT_DEPTH;
-        l->depth_read_only = true;
+        l->depth_read_only = !volumes;
     }
     l->color[0] = HL_ROLE_LIGHT;
-    l->repeat = p->light_path == HL_LIGHT_PATH_RECTS ? HL_PER_LIGHTS
+    l->repeat = p->light_path == HL_LIGHT_PATH_RECTS || volumes
+                ? HL_PER_LIGHTS
                 : p->light_path == HL_LIGHT_PATH_TILES ? HL_PER_TILE : HL_ONCE;
     l->blend = p->light_path == HL_LIGHT_PATH_LISTS ? HL_BLEND_OFF
                                                     : HL_BLEND_ADD;
     l->lights_a_draw = p->light_path == HL_LIGHT_PATH_LISTS ? 0 : p->batch;
+    if (p->shadows == HL_SHADOWS_VOLUMES)
+        hl_plan_shadowed_pass(p);
+    else if (p->shadows == HL_SHADOWS_MAPS)
+        hl_plan_map_passes(p, ask);
     struct hl_plan_pass *m = hl_plan_add_pass(p, HL_PASS_MATERIAL);
     m->color[0] = HL_ROLE_COLOR;
     m->depth = HL_ROLE_DEPTH;
@@ -124,18 +133,36 @@ static enum hl_refusal add_passes(struct hl_plan *p, const struct hl_ask *ask)
     return HL_REFUSED_NOTHING;
 }
 
+/* Pairs beside normal and DSF, nanoseconds an L texel: BRDFs are written and
+ * fetched again, motion is written. Four bytes cost half of what blending
+ * eight does. */
+static double pairs_cost(const struct hl_plan *p,
+                         const struct hl_cost_model *c)
+{
+    double write = 1.5 * 0.5 * (double)c->blend_ns;
+    return (p->brdfs ? write + (double)c->fetch_ns : 0) +
+           (p->motion ? write : 0);
+}
+
+/* The same in bytes; the reader of motion is not this frame's. */
+static double pairs_moved(const struct hl_plan *p)
+{
+    return (p->brdfs ? 2 * 4 : 0) + (p->motion ? 4 : 0);
+}
+
 /* Geometry twice; the G-buffer written, the DSF's taps read a pixel. */
 static double geometry_cost(const struct hl_plan *p, const struct hl_ask *ask)
 {
     const struct hl_cost_model *c = &ask->caps->cost;
     double taps = p->dsf == HL_DSF_EXACT ? 1 : p->dsf == HL_DSF_OFF ? 4 : 8;
     double light = (double)p->light_width * p->light_height;
-    double frame = (double)p->width * p->height *
-                   (1.0 + 0.06 * (p->samples - 1));
+    double frame = hl_plan_shaded_pixels(ask);
     return 2.0 * ask->n.n_objects * (double)c->draw_ns +
            2.0 * ask->n.n_triangles * (double)c->vertex_ns +
-           1.5 * light * (double)c->pixel_ns * 2 +
-           1.5 * frame * ((double)c->pixel_ns + taps * (double)c->fetch_ns);
+           HL_OVERDRAW * light * (double)c->pixel_ns * 2 +
+           light * pairs_cost(p, c) +
+           HL_OVERDRAW * frame *
+           ((double)c->pixel_ns + taps * (double)c->fetch_ns);
 }
 
 /* Bytes a frame pixel: every target written, and read where it is sampled. */
@@ -150,15 +177,96 @@ static double moved(const struct hl_plan *p, double resolved)
     double taps = p->dsf == HL_DSF_EXACT ? 1 : 4;
     double dsf = p->dsf == HL_DSF_SLOPE || p->dsf == HL_DSF_CONSTANT ? 16 : 0;
     double copy = hl_plan_target(p, HL_ROLE_DEPTH_COPY) ? 2 * 4 : 0;
-    return ratio * (2 * 12 + copy + texel) + taps * texel + dsf +
-           (color + 4) * p->samples + resolved / pixels;
+    return ratio * (2 * 12 + pairs_moved(p) + copy + texel) +
+           taps * texel + dsf + (color + 4) * p->samples + resolved / pixels;
 }
+
+/* ---- no lights ---------------------------------------------------------- */
+
+/* What stages are bound to, read or not. */
+static bool kept_dark(enum hl_role r)
+{
+    return r != HL_ROLE_NORMAL && r != HL_ROLE_EXPONENT &&
+           r != HL_ROLE_LIGHT_DEPTH && r != HL_ROLE_DEPTH_COPY;
+}
+
+/* A scene without lights pays for none (K 7.1: the base cost): no geometry
+ * pass, no light pass, no filter; material stages still have their two
+ * textures, of one texel. */
+static void darken(struct hl_plan *p)
+{
+    uint32_t n = 0;
+    for (uint32_t i = 0; i < p->n_targets; i++)
+        if (kept_dark(p->target[i].role))
+            p->target[n++] = p->target[i];
+    memset(&p->target[n], 0, (p->n_targets - n) * sizeof *p->target);
+    p->n_targets = n;
+    n = 0;
+    for (uint32_t i = 0; i < p->n_passes; i++)
+        if (p->pass[i].role == HL_PASS_MATERIAL)
+            p->pass[n++] = p->pass[i];
+    memset(&p->pass[n], 0, (p->n_passes - n) * sizeof *p->pass);
+    p->n_passes = n;
+    p->dsf = HL_DSF_DARK;
+    p->specular = HL_SPECULAR_NONE;
+    p->light_path = HL_LIGHT_PATH_RECTS;
+    p->tile_depth = false;
+    hl_plan_why(p, HL_WHY_NO_LIGHT_PASS, 0, 0, 0, 0);
+}
+
+static double dark_cost(const struct hl_ask *ask)
+{
+    const struct hl_cost_model *c = &ask->caps->cost;
+    return ask->n.n_objects * (double)c->draw_ns +
+           ask->n.n_triangles * (double)c->vertex_ns +
+           HL_OVERDRAW * hl_plan_shaded_pixels(ask) * (double)c->pixel_ns;
+}
+
+static enum hl_refusal plan_dark(struct hl_plan *p, const struct hl_ask *lit)
+{
+    struct hl_ask ask = *lit;
+    uint32_t unused;
+    ask.n.shadows = HL_SHADOWS_NONE;
+    ask.n.translucency = HL_TRANSLUCENCY_FORWARD;
+    enum hl_refusal r = hl_plan_common(p, &ask);
+    if (r != HL_REFUSED_NOTHING)
+        return r;
+    choose_size(p, &ask);
+    uint32_t w = p->light_width, h = p->light_height;
+    p->light_width = p->light_height = 1;
+    r = choose_gbuffer(p, &ask);
+    if (r == HL_REFUSED_NOTHING) {
+        hl_plan_decals(p, &ask, HL_FORMAT_NONE);
+        r = hl_plan_translucency(p, &ask);
+    }
+    hl_plan_light_path(p, &ask);
+    if (r == HL_REFUSED_NOTHING)
+        r = hl_plan_light_format(p, &ask);
+    if (r == HL_REFUSED_NOTHING)
+        r = hl_plan_frame_targets(p, &ask, ask.n.blended || ask.n.decals);
+    if (r == HL_REFUSED_NOTHING)
+        r = add_passes(p, &ask);
+    if (r != HL_REFUSED_NOTHING)
+        return r;
+    p->light_width = w;
+    p->light_height = h;
+    darken(p);
+    p->moved_per_pixel = (float)((
+        hl_format_info(hl_plan_target(p, HL_ROLE_COLOR)->format)->bytes + 4) *
+        p->samples);
+    hl_plan_finish(p, &ask, dark_cost(&ask));
+    return hl_plan_edram(p, &ask, &unused, &unused);
+}
+
+/* ---- the pipeline ------------------------------------------------------- */
 
 static enum hl_refusal plan_inferred(struct hl_plan *p,
                                      const struct hl_ask *ask,
                                      uint32_t *fit_width,
                                      uint32_t *fit_height)
 {
+    if (ask->n.n_lights == 0 && !ask->n.motion)
+        return plan_dark(p, ask);
     enum hl_refusal r = hl_plan_common(p, ask);
     if (r != HL_REFUSED_NOTHING)
         return r;
@@ -166,10 +274,11 @@ static enum hl_refusal plan_inferred(struct hl_plan *p,
     r = choose_gbuffer(p, ask);
     if (r != HL_REFUSED_NOTHING)
         return r;
-    hl_plan_decals(p, ask, hl_plan_target(p, HL_ROLE_NORMAL)->format);
     r = hl_plan_channels(p, ask);
-    if (r == HL_REFUSED_NOTHING)
+    if (r == HL_REFUSED_NOTHING) {
+        hl_plan_decals(p, ask, hl_plan_target(p, HL_ROLE_NORMAL)->format);
         r = hl_plan_translucency(p, ask);
+    }
     if (r == HL_REFUSED_NOTHING)
         r = hl_plan_shadows(p, ask);
     if (r != HL_REFUSED_NOTHING)
@@ -180,7 +289,7 @@ static enum hl_refusal plan_inferred(struct hl_plan *p,
     double lights = hl_plan_light_path(p, ask);
     r = hl_plan_light_format(p, ask);
     if (r == HL_REFUSED_NOTHING)
-        r = hl_plan_frame_targets(p, ask, ask->n.blended ? 1 : 0);
+        r = hl_plan_frame_targets(p, ask, ask->n.blended || ask->n.decals);
     if (r != HL_REFUSED_NOTHING)
         return r;
     hl_plan_dsf(p, ask);
@@ -188,7 +297,8 @@ static enum hl_refusal plan_inferred(struct hl_plan *p,
     if (r != HL_REFUSED_NOTHING)
         return r;
     p->moved_per_pixel = (float)moved(p, hl_plan_resolves(p, ask));
-    hl_plan_finish(p, ask, geometry_cost(p, ask) + lights);
+    hl_plan_finish(p, ask, geometry_cost(p, ask) + lights +
+                           hl_plan_shadow_cost(p, ask));
     return hl_plan_edram(p, ask, fit_width, fit_height);
 }
 

@@ -150,11 +150,16 @@ enum hl_refusal hl_plan_common(struct hl_plan *p, const struct hl_ask *ask)
     p->kinds = n->lights & HL_LIGHTS_CONES ? 1 : 0;
     p->exponent = n->exponent;
     p->light_scale = p->light_out = 1.0f;
+    p->brdfs = n->brdfs;
+    /* Only the geometry pass has a channel for it. */
+    if (n->motion && p->pipeline != HL_PIPELINE_INFERRED)
+        return HL_REFUSED_MOTION;
+    if (n->shadows != HL_SHADOWS_NONE && p->pipeline != HL_PIPELINE_INFERRED)
+        return HL_REFUSED_SHADOWS;
     /* Floating point depth is finest near zero, where 1/z puts the far
      * half of the scene: reversed, the error is the same share of z. */
     p->reversed_depth = float_depth(
-        hl_plan_depth_format(ask->caps, HL_USE_TARGET | HL_USE_SAMPLED, 1,
-                             &row));
+        hl_plan_light_depth(p, ask, HL_USE_TARGET | HL_USE_SAMPLED, &row));
     if (p->reversed_depth)
         hl_plan_why(p, HL_WHY_DEPTH_REVERSED, 0, 0, 0, 0);
     if (n->samples > 1)
@@ -164,19 +169,29 @@ enum hl_refusal hl_plan_common(struct hl_plan *p, const struct hl_ask *ask)
     return hl_plan_profile(p, ask);
 }
 
+double hl_plan_shaded_pixels(const struct hl_ask *ask)
+{
+    return (double)ask->n.width * ask->n.height *
+           (1.0 + 0.06 * (ask->n.samples - 1));
+}
+
 void hl_plan_finish(struct hl_plan *p, const struct hl_ask *ask,
                     double cost_ns)
 {
     double bytes = 0;
     for (uint32_t i = 0; i < p->n_targets; i++)
         bytes += (double)p->target[i].bytes;
-    if (ask->n.blended) {
+    if (ask->n.blended || p->decals != HL_DECALS_NONE) {
         struct hl_plan_pass *b = hl_plan_add_pass(p, HL_PASS_BLENDED);
         b->color[0] = HL_ROLE_COLOR;
         b->depth = HL_ROLE_DEPTH;
         b->depth_test = p->reversed_depth ? HL_COMPARE_GREATER
                                           : HL_COMPARE_LESS;
         b->blend = HL_BLEND_OVER;
+    }
+    if (!p->stipple &&
+        (ask->n.blended || p->decals == HL_DECALS_ALPHA_OBJECTS)) {
+        p->translucency = HL_TRANSLUCENCY_FORWARD;
         hl_plan_why(p, HL_WHY_BLENDED_FORWARD, 0, 0, 0, 0);
     }
     double pixels = (double)p->width * p->height;
@@ -220,7 +235,12 @@ static enum hl_refusal check(const struct hl_needs *n,
         (unsigned)n->fill > HL_FILL_BILINEAR ||
         (unsigned)n->fetch > HL_FETCH_BILINEAR || n->shadow_size > 16384 ||
         !good(n->lights_per_pixel, 0, 1e9f) ||
-        !good(n->lights_per_object, 0, 1e9f) || !good(n->far, 0, 1e9f) ||
+        !good(n->lights_per_object, 0, 1e9f) ||
+        !good(n->further_draws, 0, 1e12f) ||
+        !good(n->further_triangles, 0, 1e15f) ||
+        !good(n->further_cover, 0, 1e9f) ||
+        !good(n->pair_triangles, 0, 1e15f) ||
+        !good(n->pair_cover, 0, 1e9f) || !good(n->far, 0, 1e9f) ||
         !good(n->dsf_k, 0, 1e3f) || !good(n->dsf_c, 0, 1) ||
         !good(n->dsf_tau, 0, 1) || !good(n->peak, 0, 1e30f) ||
         !good(n->max_error, 0, 255) || !good(n->exponent, 0, 256) ||

@@ -26,15 +26,28 @@ hl_plan_row(const struct hl_caps *caps, const struct hl_profile_format *list,
     return NULL;
 }
 
+static bool listed(const struct hl_profile_format *l, enum hl_format f)
+{
+    bool is = false;
+    for (int i = 0; i < HL_PROFILE_FORMATS && l[i].format; i++)
+        is |= l[i].format == f;
+    return is;
+}
+
+/* With a BRDF beside it the exponent is of a pair's format. */
 static const struct hl_profile_format *list_of(const struct hl_profile *p,
-                                               enum hl_role role)
+                                               enum hl_role role,
+                                               enum hl_format format)
 {
     switch (role) {
-    case HL_ROLE_NORMAL: case HL_ROLE_DSF: return p->two16;
-    case HL_ROLE_EXPONENT: return p->scalar;
+    case HL_ROLE_NORMAL: case HL_ROLE_DSF: case HL_ROLE_MOTION:
+        return p->two16;
+    case HL_ROLE_EXPONENT:
+        return listed(p->scalar, format) ? p->scalar : p->two16;
     case HL_ROLE_LIGHT: return p->light;
     case HL_ROLE_COLOR: case HL_ROLE_RESOLVED: return p->color;
-    case HL_ROLE_LIGHT_DEPTH: case HL_ROLE_DEPTH: return p->depth;
+    case HL_ROLE_LIGHT_DEPTH: case HL_ROLE_DEPTH: case HL_ROLE_SHADOW_MAP:
+        return p->depth;
     default: return NULL;
     }
 }
@@ -43,7 +56,8 @@ static const struct hl_profile_format *list_of(const struct hl_profile *p,
 enum hl_format hl_plan_console_format(const struct hl_caps *caps,
                                       const struct hl_plan_target *t)
 {
-    const struct hl_profile_format *l = list_of(&caps->profile, t->role);
+    const struct hl_profile_format *l = list_of(&caps->profile, t->role,
+                                                t->format);
     bool stand_in = false;
     for (int i = 0; l && i < HL_PROFILE_FORMATS && l[i].format; i++)
         stand_in |= l[i].on == HL_ON_STAND_IN && l[i].format == t->format &&
@@ -68,7 +82,8 @@ void hl_plan_keep(struct hl_plan *p, struct hl_plan_target *t,
         t->console.remap = 0;
     enum hl_format console = hl_plan_console_format(caps, t);
     if (console != t->format && t->role != HL_ROLE_DSF &&
-        t->role != HL_ROLE_RESOLVED && t->role != HL_ROLE_DEPTH)
+        t->role != HL_ROLE_MOTION && t->role != HL_ROLE_RESOLVED &&
+        t->role != HL_ROLE_DEPTH)
         hl_plan_why(p, HL_WHY_STAND_IN, (float)t->format, (float)console,
                     (float)t->role, 0);
 }
@@ -158,12 +173,16 @@ static enum hl_refusal add_copy(struct hl_plan *p, const struct hl_ask *ask,
 }
 
 /* K 5 has Direct3D 10 copy depth always. A view reads it where nothing tests
- * it meanwhile, so the copy is made where something does. */
+ * it meanwhile, so the copy is made where something does; and where a stencil
+ * beside it is written, since OpenGL leaves open what is read then. */
 enum hl_refusal hl_plan_depth_read(struct hl_plan *p,
                                    const struct hl_ask *ask)
 {
     const struct hl_profile *c = &ask->caps->profile;
-    bool bound = ask->n.light_depth_bound;
+    bool stencil = hl_plan_stencil(p, ask);
+    bool bound = ask->n.light_depth_bound || stencil;
+    /* What is sampled there is the copy that a resolve made before. */
+    bool apart = c->resolve_to_read && ask->caps->console_memory;
     struct hl_plan_target *t = p->target;
     while (t->role != HL_ROLE_LIGHT_DEPTH)
         t++;
@@ -172,7 +191,7 @@ enum hl_refusal hl_plan_depth_read(struct hl_plan *p,
                     (float)t->sample_as, t->console.remap, 0);
     else if (c->depth[0].on == HL_ON_CONSOLE && c->depth[0].depth_read)
         hl_plan_why(p, HL_WHY_DEPTH_PLAIN, (float)t->format, 0, 0, 0);
-    if (c->depth_copy_if_bound && bound)
+    if ((c->depth_copy_if_bound && bound) || (stencil && !apart))
         return add_copy(p, ask, t);
     if (c->depth_copy_if_bound)
         hl_plan_why(p, HL_WHY_DEPTH_IN_PLACE, (float)t->format, 0, 0, 0);
@@ -223,18 +242,38 @@ float hl_plan_light_range(struct hl_plan *p, const struct hl_ask *ask,
 
 /* ---- decals ------------------------------------------------------------- */
 
+/* A pass blends all of its targets or none: whatever else the geometry pass
+ * writes is blended too, with nothing. NONE: all of them can be. */
+static enum hl_format not_blended(const struct hl_plan *p,
+                                  const struct hl_ask *ask)
+{
+    for (uint32_t i = 0; i < p->n_targets; i++) {
+        const struct hl_plan_target *t = &p->target[i];
+        bool written = t->role == HL_ROLE_NORMAL || t->role == HL_ROLE_DSF ||
+                       t->role == HL_ROLE_EXPONENT ||
+                       t->role == HL_ROLE_MOTION;
+        if (written && !hl_format_usable(ask->caps, t->format, HL_USE_BLEND,
+                                         1))
+            return t->format;
+    }
+    return HL_FORMAT_NONE;
+}
+
 void hl_plan_decals(struct hl_plan *p, const struct hl_ask *ask,
                     enum hl_format normal)
 {
     if (!ask->n.decals)
         return;
+    enum hl_format cannot = not_blended(p, ask);
     enum hl_reason why = HL_WHY_DECALS_BLEND;
     if (normal == HL_FORMAT_NONE)
         why = HL_WHY_DECALS_FORWARD;
     else if (ask->caps->profile.packed_normals)
         why = HL_WHY_DECALS_PACKED;
-    else if (!hl_format_usable(ask->caps, normal, HL_USE_BLEND, 1))
+    else if (cannot != HL_FORMAT_NONE) {
         why = HL_WHY_DECALS_NO_BLEND;
+        normal = cannot;
+    }
     p->decals = why == HL_WHY_DECALS_BLEND ? HL_DECALS_BLEND_NORMALS
                                            : HL_DECALS_ALPHA_OBJECTS;
     hl_plan_why(p, why, (float)normal, 0, 0, 0);
@@ -255,7 +294,7 @@ static enum hl_pass_role last_writer(const struct hl_plan *p,
     enum hl_pass_role last = HL_PASS_NONE;
     for (uint32_t i = 0; i < p->n_passes; i++) {
         const struct hl_plan_pass *s = &p->pass[i];
-        if ((s->depth == role && !s->depth_read_only) ||
+        if ((s->depth == role && s->depth_write) ||
             hl_pass_colors(s, role))
             last = s->role;
     }

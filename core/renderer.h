@@ -48,6 +48,9 @@ struct hl_stippling {
     struct hl_stipple_object *objects;
     struct hl_stipple_outline *outlines;
     uint8_t *patterns;
+    uint32_t max_objects, n; /* n: of the last frame                         */
+    bool again;              /* the last frame once more: patterns stay      */
+    struct hl_stipple_stats stats;
 };
 
 /* frame_volume.c: stencil volumes of lights and of shadows. */
@@ -65,9 +68,17 @@ struct hl_volumes {
 };
 
 /* frame_map.c: shadow maps. */
+struct hl_caster {
+    struct hl_box box;
+    uint32_t item;
+    uint32_t material, material_bytes; /* offset in the arena; 0 bytes: not
+                                        * there yet                          */
+};
 struct hl_maps {
     hl_prog light;           /* one light through its map                    */
-    hl_prog masked;
+    struct hl_caster *casters;   /* n of this frame, whether seen or not     */
+    uint32_t n;
+    struct hl_texture_binding (*textures)[HL_TEX_MESH_COUNT]; /* of each     */
 };
 
 struct hl_renderer {
@@ -97,7 +108,13 @@ struct hl_renderer {
     struct hl_stippling stippling;
     struct hl_volumes volumes;
     struct hl_maps maps;
+    /* hl_view_set: where this frame's picture lies. Draws of meshes and
+     * screens get the scissors by themselves (width 0: the whole target). */
     struct hl_span span;     /* of the L-buffer                              */
+    struct hl_span frame_span;
+    struct hl_rect light_scissor, frame_scissor;
+    struct hl_camera wide;   /* sees all that is drawn: for culling          */
+    float wide_aspect;
     struct hl_draw *draws;
     uint32_t n_draws;
     uint32_t *tile_first, *refs;
@@ -131,6 +148,15 @@ enum hl_result hl_screen_program(struct hl_renderer *, enum hl_shader fragment,
                                  enum hl_format color, enum hl_blend blend,
                                  uint32_t batch, hl_prog *out);
 
+/* One light a draw, added where `face`, which both faces get, lets it pass;
+ * for the plan's pass of that role. */
+enum hl_result hl_light_stencil_program(struct hl_renderer *,
+                                        enum hl_pass_role,
+                                        const struct hl_stencil_face *,
+                                        hl_prog *out);
+/* Half a texel of the L-buffer, where vertex stages shift by it. */
+void hl_shift_specs(const struct hl_plan *, struct hl_prog_desc *);
+
 /* All that frames draw with; those of hl_frame_inspect come on first use. */
 enum hl_result hl_programs_make(struct hl_renderer *);
 
@@ -145,6 +171,20 @@ enum hl_result hl_frame_flush(struct hl_renderer *);
 /* Object block of a visible item. */
 void hl_gather_object(struct hl_renderer *, const struct hl_frame *,
                       struct hl_visible *);
+/* Material block of an item. */
+void hl_gather_material(struct hl_renderer *, const struct hl_item *,
+                        struct hl_visible *);
+
+/* frame_view.c: spans, scissors and the wide camera of a frame; checked. */
+void hl_view_set(struct hl_renderer *, const struct hl_frame *);
+/* View to clip: y down, z in 0..w (hal.h's convention). Everything that meets
+ * the frame's depth is jittered. */
+void hl_view_to_clip(const struct hl_renderer *, const struct hl_camera *,
+                     bool jittered, float out[16]);
+/* Stored depth d is that of view z = x / (d + y), z > 0; finite for the clear
+ * value too. */
+void hl_depth_terms(const struct hl_renderer *, const struct hl_camera *,
+                    float *x, float *y);
 
 /* Every part: carve its memory, make and destroy what it has of a device. */
 struct hl_carve;
@@ -155,6 +195,8 @@ void hl_volumes_carve(struct hl_carve *, struct hl_renderer *,
                       const struct hl_renderer_desc *);
 enum hl_result hl_volumes_make(struct hl_renderer *);
 void hl_volumes_destroy(struct hl_renderer *);
+void hl_maps_carve(struct hl_carve *, struct hl_renderer *,
+                   const struct hl_renderer_desc *);
 enum hl_result hl_maps_make(struct hl_renderer *);
 void hl_maps_destroy(struct hl_renderer *);
 

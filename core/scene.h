@@ -13,7 +13,9 @@ struct hl_camera {
     float tan_half_y;        /* tangent of half the vertical field of view   */
     float near, far;         /* metres, 0 < near < far                       */
     /* Frame pixels by which the picture is moved right and down, each within
-     * -1..1: of temporal antialiasing. Lights, stipple and buffers stay. */
+     * -1..1, else the frame is refused: for temporal antialiasing. Meshes
+     * alone are moved: tiles, scissors and stipple patterns stay with the
+     * targets' texels, and light is as exact as without. */
     float jitter[2];
 };
 
@@ -124,9 +126,12 @@ struct hl_frame {
     float background[3];
     /* Camera of the last frame, for motion; NULL: it did not move. */
     const struct hl_camera *before;
-    /* Part of the frame's targets that is drawn, from the top left on, pixels;
-     * 0: all. The L-buffer's part keeps the same ratio, so that filters and
-     * stipple patterns do not notice (dynamic resolution). */
+    /* Part of the frame's targets that is drawn, from the top left on, pixels,
+     * up to the plan's; 0: all (dynamic resolution). The camera's vertical
+     * field of view fills the part's height, its aspect is the part's. The
+     * L-buffer's part keeps the same ratio, so that filters and stipple
+     * patterns do not notice; a few texels beyond its edges are drawn too,
+     * for taps. The rest of the frame is background. */
     uint32_t width, height;
 };
 #endif

@@ -13,7 +13,7 @@
  * Deterministic: the result depends on the objects and on what was assigned
  * before, not on the machine, the order of the array or the time taken.
  * Memory is the caller's; nothing here allocates. */
-#include "core/scene.h"
+#include "core/light.h"
 #include "core/stipple_mode.h"
 
 enum {
@@ -44,14 +44,15 @@ struct hl_stipple_outline {
     float x[HL_STIPPLE_CORNERS], y[HL_STIPPLE_CORNERS];
 };
 
-/* Outline of a model-space box on a target of width x height texels, cut at
- * the near plane and at the target's edges; every texel centre that anything
- * inside the box covers lies inside or within 1/16 texel. False: nothing of
- * the box is seen (or a NaN), and *out is untouched. */
+/* Outline of a model-space box on the L-buffer, cut at the near plane and at
+ * the edges of what is drawn; every texel centre that anything inside the box
+ * covers without jitter lies inside or within 1/16 texel. Jitter moves all
+ * outlines alike and is left out. False: nothing of the box is seen (or a
+ * NaN), and *out is untouched. */
 bool hl_stipple_project(struct hl_stipple_outline *out, const float world[16],
                         const float min[3], const float max[3],
-                        const struct hl_camera *camera, uint32_t width,
-                        uint32_t height);
+                        const struct hl_camera *camera,
+                        const struct hl_span *span);
 
 struct hl_stipple_object {
     uint32_t id;             /* its name from frame to frame; no two alike   */

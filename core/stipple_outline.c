@@ -185,17 +185,33 @@ static struct polygon whole(double x, double y)
     return p;
 }
 
+/* Texels that are drawn beyond the picture's edges. Jitter moves a picture by
+ * at most a frame pixel, and outlines do not follow it, so that patterns stay
+ * the same from frame to frame: whole texels on all sides allow for what it
+ * brings in, so that this does not change with it either. */
+static void past_edges(const struct hl_span *s, double *x, double *y)
+{
+    float jx = hl_max(s->jx, -s->jx), jy = hl_max(s->jy, -s->jy);
+    double most = (double)ceilf(hl_max(jx, jy));
+    *x = (double)s->cols - (double)s->w + most;
+    *y = (double)s->rows - (double)s->h + most;
+}
+
 bool hl_stipple_project(struct hl_stipple_outline *out, const float world[16],
                         const float min[3], const float max[3],
-                        const struct hl_camera *camera, uint32_t width,
-                        uint32_t height)
+                        const struct hl_camera *camera,
+                        const struct hl_span *span)
 {
-    double tan_y = (double)camera->tan_half_y;
-    double tan_x = tan_y * (double)width / (double)height;
+    double w = (double)span->w, h = (double)span->h;
+    double tan_x = (double)span->tan_x, tan_y = (double)span->tan_y;
+    double right, bottom, edge_x, edge_y;
     struct polygon p;
     hl_vec3 v[8];
-    if (width == 0 || height == 0)
+    if (span->cols == 0 || span->rows == 0)
         return false;
+    past_edges(span, &right, &bottom);
+    edge_x = tan_x * (1 + 2 * right / w);
+    edge_y = tan_y * (1 + 2 * bottom / h);
     corners_of(v, world, camera->view, min, max);
     if (!all_finite(v))
         return false;
@@ -203,20 +219,20 @@ bool hl_stipple_project(struct hl_stipple_outline *out, const float world[16],
     if (p.n < 3)
         return false;
     hull(&p);
-    clip(&p, 1, 0, tan_x);
-    clip(&p, -1, 0, tan_x);
-    clip(&p, 0, 1, tan_y);
-    clip(&p, 0, -1, tan_y);
+    clip(&p, 1, 0, edge_x);
+    clip(&p, -1, 0, edge_x);
+    clip(&p, 0, 1, edge_y);
+    clip(&p, 0, -1, edge_y);
     if (p.n < 3)
         return false;
     /* Of 10 corners and 4 cuts there are 14, unless rounding made more:
      * conservatively the whole target. */
     if (p.n > HL_STIPPLE_CORNERS)
-        p = whole(tan_x, tan_y);
+        p = whole(edge_x, edge_y);
     out->n_corners = p.n;
     for (uint32_t i = 0; i < p.n; i++) {
-        out->x[i] = (float)((1 + p.at[i].x / tan_x) * 0.5 * (double)width);
-        out->y[i] = (float)((1 + p.at[i].y / tan_y) * 0.5 * (double)height);
+        out->x[i] = (float)((1 + p.at[i].x / tan_x) * 0.5 * w);
+        out->y[i] = (float)((1 + p.at[i].y / tan_y) * 0.5 * h);
     }
     return true;
 }

@@ -15,8 +15,9 @@ static uint32_t tile_at(float texel, uint32_t tile, uint32_t n)
 static struct span sphere_span(const struct hl_tile_grid *g,
                                const struct hl_lit_sphere *s)
 {
-    float sx = (float)g->w * 0.5f / g->tan_x, cx = (float)g->w * 0.5f;
-    float sy = (float)g->h * 0.5f / g->tan_y, cy = (float)g->h * 0.5f;
+    const struct hl_span *q = &g->span;
+    float sx = q->w * 0.5f / q->tan_x, cx = q->w * 0.5f + q->jx;
+    float sy = q->h * 0.5f / q->tan_y, cy = q->h * 0.5f + q->jy;
     struct span p = { tile_at(cx + s->x0 * sx, g->tile, g->nx),
                       tile_at(cx + s->x1 * sx, g->tile, g->nx),
                       tile_at(cy - s->y1 * sy, g->tile, g->ny),
@@ -29,10 +30,10 @@ static void tile_slopes(const struct hl_tile_grid *g, uint32_t tx, uint32_t ty,
                         float x[2], float y[2])
 {
     for (uint32_t i = 0; i < 2; i++) {
-        float px = (float)((tx + i) * g->tile) / (float)g->w;
-        float py = (float)((ty + i) * g->tile) / (float)g->h;
-        x[i] = (px * 2.0f - 1.0f) * g->tan_x;
-        y[i] = (1.0f - py * 2.0f) * g->tan_y;
+        float px = ((float)((tx + i) * g->tile) - g->span.jx) / g->span.w;
+        float py = ((float)((ty + i) * g->tile) - g->span.jy) / g->span.h;
+        x[i] = (px * 2.0f - 1.0f) * g->span.tan_x;
+        y[i] = (1.0f - py * 2.0f) * g->span.tan_y;
     }
 }
 
@@ -119,18 +120,19 @@ static void tile_depth(float *z0, float *z1, const float *d, uint32_t w,
     *z1 = high;
 }
 
-void hl_tiles_depth(float *z0, float *z1, const float *d, uint32_t w,
-                    uint32_t h, uint32_t tile, float a, float b, float clear)
+void hl_tiles_depth(float *z0, float *z1, const struct hl_tile_grid *g,
+                    const float *d, uint32_t width, float a, float b,
+                    float clear)
 {
-    uint32_t nx = (w + tile - 1) / tile, ny = (h + tile - 1) / tile;
-    for (uint32_t ty = 0; ty < ny; ty++)
-        for (uint32_t tx = 0; tx < nx; tx++) {
+    uint32_t w = g->span.cols, h = g->span.rows, tile = g->tile;
+    for (uint32_t ty = 0; ty < g->ny; ty++)
+        for (uint32_t tx = 0; tx < g->nx; tx++) {
             uint32_t x0 = tx * tile, y0 = ty * tile;
             uint32_t x1 = x0 + tile < w ? x0 + tile : w;
             uint32_t y1 = y0 + tile < h ? y0 + tile : h;
             float low, high;
-            tile_depth(&low, &high, d, w, x0, x1, y0, y1, clear);
-            uint32_t t = ty * nx + tx;
+            tile_depth(&low, &high, d, width, x0, x1, y0, y1, clear);
+            uint32_t t = ty * g->nx + tx;
             z0[t] = 1.0f;
             z1[t] = 0.0f;
             if (low > high)

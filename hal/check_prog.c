@@ -171,7 +171,7 @@ enum hl_result hl_check_prog(struct hl_device *d, struct hl_prog_desc *p)
     if (stage_empty(&p->vertex))
         return hl_refuse(d, HL_ERR_INVALID, HL_MSG_ARGUMENT,
                          "hl_prog_desc.vertex", "no stage");
-    if (stage_empty(&p->fragment) && p->n_colors > 0)
+    if (stage_empty(&p->fragment) && p->n_colors > 0 && !p->no_color_write)
         return hl_refuse(d, HL_ERR_INVALID, HL_MSG_ARGUMENT,
                          "hl_prog_desc.fragment", "colours but no stage");
     if ((unsigned)p->vertex.builtin >= HL_SHADER_COUNT ||

@@ -15,7 +15,7 @@
  * - Nothing is printed, no global state, memory only through the hooks. */
 #include "hal/caps.h"
 
-#define HL_VERSION 1u        /* raised whenever a public struct changes      */
+#define HL_VERSION 2u        /* raised whenever a public struct changes      */
 
 struct hl_device;
 struct hl_backend;           /* hal/backend.h                                */
@@ -225,7 +225,8 @@ enum hl_topology { HL_TOPOLOGY_TRIANGLES = 0, HL_TOPOLOGY_LINES };
 /* Front faces are counter-clockwise seen with y up, on every backend. */
 struct hl_prog_desc {
     const char *label;
-    struct hl_stage vertex, fragment;   /* fragment may be empty: depth only */
+    /* fragment may be empty where no colour is written: depth and stencil   */
+    struct hl_stage vertex, fragment;
     struct hl_spec spec[HL_MAX_SPECS];  /* for both stages                   */
     uint32_t n_specs;
     struct hl_vertex_layout layout;
@@ -292,7 +293,8 @@ struct hl_target {
 
 /* All targets have one size and one sample count, the programs' formats.
  * Textures that draws sample are not targets of the same pass, but for a
- * read-only depth target. */
+ * depth target that is read only; or any where caps.console_memory and
+ * profile.resolve_to_read: what is sampled is what passes before have left. */
 struct hl_pass {
     const char *label;       /* static string: kept for the timings          */
     struct hl_target color[HL_MAX_COLORS];
@@ -312,7 +314,13 @@ enum hl_result hl_pass_run(struct hl_device *, const struct hl_pass *);
  * when they are done. */
 enum hl_result hl_submit(struct hl_device *, bool wait);
 
-struct hl_timing { const char *label; double ms; };
+struct hl_timing {
+    const char *label;
+    double ms;
+    /* Fragments that a stage shaded, samples of one counted once; those of
+     * them that were blended. 0 where the machine does not count. */
+    uint64_t fragments, blended;
+};
 /* Passes of the last waited submit, in order. Returns how many there are;
  * 0 where the machine has no timestamps. */
 uint32_t hl_timings(struct hl_device *, struct hl_timing *out, uint32_t max);

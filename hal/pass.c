@@ -155,8 +155,9 @@ static enum hl_result take_targets(struct hl_device *d, struct hl_bk_pass *o,
 static bool is_target(const struct hl_device *d, const struct hl_bk_pass *p,
                       uint32_t slot)
 {
-    bool readable = p->depth_read_only &&
-                    !d->caps.profile.depth_copy_if_bound;
+    bool apart = d->caps.console_memory && d->caps.profile.resolve_to_read;
+    bool readable = apart || (p->depth_read_only &&
+                              !d->caps.profile.depth_copy_if_bound);
     for (uint32_t i = 0; i < p->n_colors; i++)
         if (p->color[i].slot == slot || p->color[i].resolve == slot)
             return true;

@@ -21,6 +21,8 @@ void main()
     vec3 p = v_position;
     vec3 n = hl_read_normal();
     vec3 v = -p * inversesqrt(dot(p, p));
+    if (hl_spec_brdfs != 0u)
+        hl_lit_skin = hl_object.flat_ids.w == float(HL_BRDF_SKIN_INDEX);
 #ifdef HL_LIST
     hl_sum l = hl_sum_list(p, n, v, s.exponent, uint(hl_object.ids.z),
                            uint(hl_object.ids.w));

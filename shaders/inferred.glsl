@@ -2,12 +2,14 @@
 /* How a material pass reads its lighting: include this in a fragment stage
  * (also one of an embedder's own) and call hl_read_lights(id). Uses texture
  * slots 0 and 1 and uniform slots 0 and 1; define HL_OWN_MATERIAL_BLOCK
- * first to lay out uniform slot 2 yourself, and HL_FLOAT_TAPS for plans with
- * float_taps, whose machines sample numbers and not words. */
+ * first to lay out uniform slot 2 yourself, HL_FLOAT_TAPS for plans with
+ * float_taps, whose machines sample numbers and not words, and HL_FLOAT_LIGHT
+ * for others with dsf_bilinear, which filter the L-buffer. */
 #include "shaders/shared/block.h"
 #include "shaders/shared/dsf.h"
 #include "shaders/shared/pack.h"
 #include "shaders/shared/shade.h"
+#include "shaders/shared/stipple.h"
 
 layout(constant_id = HL_SPEC_DSF) const uint hl_spec_dsf = 1u;
 layout(constant_id = HL_SPEC_LIGHT_BITS) const uint hl_spec_light_bits = 0u;
@@ -19,16 +21,22 @@ layout(constant_id = HL_SPEC_DSF_K) const float hl_spec_dsf_k = 1.5;
 layout(constant_id = HL_SPEC_DSF_C) const float hl_spec_dsf_c = 0.001;
 layout(constant_id = HL_SPEC_DSF_TAU) const float hl_spec_dsf_tau = 0.01;
 layout(constant_id = HL_SPEC_LIGHT_SCALE) const float hl_spec_scale = 1.0;
+layout(constant_id = HL_SPEC_STIPPLE) const uint hl_spec_stipple = 0u;
+layout(constant_id = HL_SPEC_STIPPLE_CONE) const uint hl_spec_cone = 0u;
+layout(constant_id = HL_SPEC_FILL) const uint hl_spec_fill = 0u;
 #ifdef HL_FLOAT_TAPS
+#define HL_FLOAT_LIGHT
 layout(constant_id = HL_SPEC_TWO16) const uint hl_spec_two16 = 0u;
 layout(constant_id = HL_SPEC_ID_STEPS) const float hl_spec_id_steps = 65535.0;
-layout(set = 1, binding = HL_TEX_LIGHT) uniform sampler2D hl_tex_light;
 layout(set = 1, binding = HL_TEX_DSF) uniform sampler2D hl_tex_dsf;
-#define hl_texels vec4
+#else
+layout(set = 1, binding = HL_TEX_DSF) uniform usampler2D hl_tex_dsf;
+#endif
+#ifdef HL_FLOAT_LIGHT
+layout(constant_id = HL_SPEC_BILINEAR) const uint hl_spec_bilinear = 0u;
+layout(set = 1, binding = HL_TEX_LIGHT) uniform sampler2D hl_tex_light;
 #else
 layout(set = 1, binding = HL_TEX_LIGHT) uniform usampler2D hl_tex_light;
-layout(set = 1, binding = HL_TEX_DSF) uniform usampler2D hl_tex_dsf;
-#define hl_texels uvec4
 #endif
 
 /* D of the light model (without ambient), and the factor that turns a
@@ -39,35 +47,94 @@ struct hl_lit { vec3 diffuse; vec3 specular; };
  * takes exactly these whatever the machine's rounding, and the fraction. */
 struct hl_taps { vec2 middle, f; };
 
+/* View depth at the pixel's centre, metres; its slope is the plane's also
+ * where the centre lies outside of the triangle. */
+float hl_center_depth() { return 1.0 / gl_FragCoord.w; }
+
+#ifdef HL_CENTROID
+layout(location = HL_VARY_CLIP) centroid in vec3 v_clip;
+
+/* Pixels from the pixel's centre to the place that is lit. What interpolation
+ * makes of the centre itself is the centre: pixels without an edge are as
+ * they are without HL_CENTROID. */
+vec2 hl_off_center()
+{
+    vec2 size = vec2(hl_spec_light_w / hl_spec_ratio_x,
+                     hl_spec_light_h / hl_spec_ratio_y);
+    vec2 d = (v_clip.xy / v_clip.z * 0.5 + 0.5) * size - gl_FragCoord.xy;
+    return any(greaterThan(abs(d), vec2(1.0 / 32.0))) ? d : vec2(0.0);
+}
+#endif
+
+/* Where the pixel lies among the centres of the L-buffer's texels. */
+vec2 hl_light_pixel()
+{
+    vec2 p = gl_FragCoord.xy;
+#ifdef HL_CENTROID
+    p += hl_off_center();
+#endif
+    return p * vec2(hl_spec_ratio_x, hl_spec_ratio_y) - 0.5;
+}
+
+/* View depth there, metres. */
+float hl_pixel_depth()
+{
+#ifdef HL_CENTROID
+    if (hl_off_center() != vec2(0.0))
+        return v_clip.z;
+#endif
+    return hl_center_depth();
+}
+
 hl_taps hl_find_taps()
 {
-    vec2 p = gl_FragCoord.xy * vec2(hl_spec_ratio_x, hl_spec_ratio_y) - 0.5;
+    vec2 p = hl_light_pixel();
     vec2 b = floor(p);
     vec2 texel = vec2(1.0 / hl_spec_light_w, 1.0 / hl_spec_light_h);
     return hl_taps((b + 1.0) * texel, p - b);
 }
 
 /* A gather gives texels 01, 11, 10, 00; everything here is 00, 10, 01, 11. */
-hl_texels hl_in_order(hl_texels g) { return g.wzxy; }
+vec4 hl_in_order(vec4 g) { return g.wzxy; }
+uvec4 hl_in_order(uvec4 g) { return g.wzxy; }
+
+/* ---- depths and ids ------------------------------------------------------ */
 
 /* Depths, in steps of far / 65535, and ids of the four taps. */
 struct hl_dsf_taps { vec4 depth, id; };
 
 #ifdef HL_FLOAT_TAPS
+vec2 hl_split_dsf(vec2 pair)
+{
+    vec2 v = hl_two16_decode(hl_spec_two16, pair);
+    return vec2(v.x * 65535.0, v.y * hl_spec_id_steps);
+}
+
+vec2 hl_fetch_dsf(ivec2 texel)
+{
+    return hl_split_dsf(texelFetch(hl_tex_dsf, texel, 0).xy);
+}
+
 hl_dsf_taps hl_read_dsf(vec2 middle)
 {
     vec4 x = hl_in_order(textureGather(hl_tex_dsf, middle, 0));
     vec4 y = hl_in_order(textureGather(hl_tex_dsf, middle, 1));
     hl_dsf_taps t;
     for (int i = 0; i < 4; i++) {
-        vec2 v = hl_two16_decode(hl_spec_two16, vec2(x[i], y[i]));
-        t.depth[i] = v.x * 65535.0;
-        t.id[i] = v.y * hl_spec_id_steps;
+        vec2 v = hl_split_dsf(vec2(x[i], y[i]));
+        t.depth[i] = v.x;
+        t.id[i] = v.y;
     }
     return t;
 }
 #else
 /* Depth in the low half of the word, id in the high half, both codes. */
+vec2 hl_fetch_dsf(ivec2 texel)
+{
+    uint w = texelFetch(hl_tex_dsf, texel, 0).x;
+    return vec2(float(w & 0xffffu), float(w >> 16u));
+}
+
 hl_dsf_taps hl_read_dsf(vec2 middle)
 {
     uvec4 w = hl_in_order(textureGather(hl_tex_dsf, middle, 0));
@@ -75,34 +142,61 @@ hl_dsf_taps hl_read_dsf(vec2 middle)
 }
 #endif
 
-/* Acceptance, 0 or 1, of taps 00, 10, 01, 11 for a surface's ids. */
-vec4 hl_accept_taps(hl_taps t, vec4 ids)
+/* A pixel of a surface as taps are compared with it: depth, metres; change of
+ * depth in metres an L texel, both axes; one step of stored depth; region id
+ * and half of one. */
+struct hl_pixel { float z, slope, step, id, half_step; };
+
+hl_pixel hl_look(vec4 ids)
 {
-    float z = 1.0 / gl_FragCoord.w;
-    float step = ids.w / 65535.0;
-    float threshold = hl_spec_dsf_tau * z;
+    float slope = 0.0;
     if (hl_spec_dsf == uint(HL_DSF_SLOPE)) {
-        /* Pixels to L texels: an L texel spans 1 / ratio pixels. The taps
-         * lie within one texel of the pixel on either axis. */
-        float slope = abs(dFdx(z)) * (1.0 / hl_spec_ratio_x) +
-                      abs(dFdy(z)) * (1.0 / hl_spec_ratio_y);
-        threshold = hl_dsf_threshold(step, hl_spec_dsf_k, hl_spec_dsf_c, z,
-                                     slope, 1.0);
+        /* Pixels to L texels: an L texel spans 1 / ratio pixels. */
+        float middle = hl_center_depth();
+        slope = abs(dFdx(middle)) * (1.0 / hl_spec_ratio_x) +
+                abs(dFdy(middle)) * (1.0 / hl_spec_ratio_y);
     }
-    hl_dsf_taps taps = hl_read_dsf(t.middle);
-    vec4 d = taps.depth * step;
-    vec4 i = taps.id;
-    return vec4(hl_dsf_accept(d.x, i.x, z, ids.x, threshold, 0.5),
-                hl_dsf_accept(d.y, i.y, z, ids.x, threshold, 0.5),
-                hl_dsf_accept(d.z, i.z, z, ids.x, threshold, 0.5),
-                hl_dsf_accept(d.w, i.w, z, ids.x, threshold, 0.5));
+    return hl_pixel(hl_pixel_depth(), slope, ids.w / 65535.0, ids.x,
+                    hl_dsf_half_step(ids.x));
 }
 
-#ifdef HL_FLOAT_TAPS
+/* For taps within so many texels of the pixel on either axis. */
+float hl_threshold(hl_pixel p, float distance_texels)
+{
+    if (hl_spec_dsf == uint(HL_DSF_SLOPE))
+        return hl_dsf_threshold(p.step, hl_spec_dsf_k, hl_spec_dsf_c, p.z,
+                                p.slope, distance_texels);
+    return hl_spec_dsf_tau * p.z;
+}
+
+/* Acceptance, 0 or 1, of taps 00, 10, 01, 11. */
+vec4 hl_accept(hl_dsf_taps t, hl_pixel p, float threshold)
+{
+    vec4 d = t.depth * p.step;
+    vec4 i = t.id;
+    float h = p.half_step;
+    return vec4(hl_dsf_accept(d.x, i.x, p.z, p.id, threshold, h),
+                hl_dsf_accept(d.y, i.y, p.z, p.id, threshold, h),
+                hl_dsf_accept(d.z, i.z, p.z, p.id, threshold, h),
+                hl_dsf_accept(d.w, i.w, p.z, p.id, threshold, h));
+}
+
+/* The same for a surface's ids. */
+vec4 hl_accept_taps(hl_taps t, vec4 ids)
+{
+    hl_pixel p = hl_look(ids);
+    return hl_accept(hl_read_dsf(t.middle), p, hl_threshold(p, 1.0));
+}
+
+/* ---- light --------------------------------------------------------------- */
+
+#ifdef HL_FLOAT_LIGHT
+/* Not min: what a filter makes of infinities is no number, and goes too. */
 vec4 hl_unpack_light(vec4 l)
 {
     return hl_spec_light_bits == uint(HL_BITS_HALF)
-           ? min(l, vec4(HL_HALF_MAX)) : l;
+           ? mix(vec4(HL_HALF_MAX), l, lessThanEqual(l, vec4(HL_HALF_MAX)))
+           : l;
 }
 
 vec4 hl_weigh_light(vec2 middle, vec4 k)
@@ -113,6 +207,14 @@ vec4 hl_weigh_light(vec2 middle, vec4 k)
     vec4 a = hl_unpack_light(textureGather(hl_tex_light, middle, 3));
     return vec4(dot(hl_in_order(r), k), dot(hl_in_order(g), k),
                 dot(hl_in_order(b), k), dot(hl_in_order(a), k));
+}
+
+/* All four by bilinear weights, as the machine's filter rounds them. */
+vec4 hl_filter_light(hl_taps t)
+{
+    vec2 texel = vec2(1.0 / hl_spec_light_w, 1.0 / hl_spec_light_h);
+    return hl_unpack_light(textureLod(hl_tex_light,
+                                      t.middle + (t.f - 0.5) * texel, 0.0));
 }
 #else
 vec4 hl_unpack_light(uvec4 w)
@@ -144,20 +246,130 @@ vec4 hl_weigh_light(vec2 middle, vec4 k)
 }
 #endif
 
+vec4 hl_fetch_light(ivec2 texel)
+{
+    return hl_unpack_light(texelFetch(hl_tex_light, texel, 0));
+}
+
+/* ---- samples one by one -------------------------------------------------- */
+
+/* The samples that a surface may have: all texels, or those of its pattern,
+ * every `side` texels from `cell` on. The pixel lies `f` samples from sample
+ * `base`. */
+struct hl_lattice { vec2 base, f, cell; float side; };
+
+hl_lattice hl_find_lattice(vec2 cell, float side)
+{
+    vec2 q = (hl_light_pixel() - cell) / side;
+    vec2 b = floor(q);
+    return hl_lattice(b, q - b, cell, side);
+}
+
+/* Texel of sample base + i; past the borders the outermost sample. The last
+ * clamp is for buffers that are smaller than a pattern's block. */
+ivec2 hl_texel(hl_lattice g, vec2 i)
+{
+    vec2 last = vec2(hl_spec_light_w, hl_spec_light_h) - 1.0;
+    vec2 most = floor((last - g.cell) / g.side);
+    vec2 s = max(min(g.base + i, most), vec2(0.0));
+    return ivec2(min(s * g.side + g.cell, last));
+}
+
+hl_dsf_taps hl_fetch_taps(hl_lattice g)
+{
+    hl_dsf_taps t;
+    for (int i = 0; i < 4; i++) {
+        vec2 v = hl_fetch_dsf(hl_texel(g, vec2(float(i & 1), float(i >> 1))));
+        t.depth[i] = v.x;
+        t.id[i] = v.y;
+    }
+    return t;
+}
+
+/* Light for a pixel whose four taps are rejected (dsf.h). */
+vec4 hl_fill_light(hl_lattice g, hl_pixel p, hl_dsf_taps t)
+{
+    float far = p.step * 65535.0, h = p.half_step;
+    vec4 d = t.depth * p.step;
+    vec2 best = hl_fill_tap(
+        vec4(hl_fill_miss(d.x, t.id.x, p.z, p.id, h, far),
+             hl_fill_miss(d.y, t.id.y, p.z, p.id, h, far),
+             hl_fill_miss(d.z, t.id.z, p.z, p.id, h, far),
+             hl_fill_miss(d.w, t.id.w, p.z, p.id, h, far)));
+    float threshold = hl_threshold(p, 2.0 * g.side);
+    float nearest = HL_FILL_NONE;
+    for (int i = 0; i < 16; i++) {
+        vec2 at = vec2(float(i & 3), float(i >> 2)) - 1.0;
+        float distance = hl_fill_distance(at.x, at.y, g.f);
+        if (distance >= nearest)
+            continue;
+        vec2 v = hl_fetch_dsf(hl_texel(g, at));
+        if (hl_dsf_accept(v.x * p.step, v.y, p.z, p.id, threshold, h) > 0.0) {
+            nearest = distance;
+            best = at;
+        }
+    }
+    return hl_fetch_light(hl_texel(g, best));
+}
+
+/* ---- surfaces ------------------------------------------------------------ */
+
+vec4 hl_read_opaque(vec4 ids)
+{
+    hl_taps t = hl_find_taps();
+    if (hl_spec_dsf == uint(HL_DSF_OFF)) {
+#ifdef HL_FLOAT_LIGHT
+        if (hl_spec_bilinear != 0u)
+            return hl_filter_light(t);
+#endif
+        return hl_weigh_light(t.middle, hl_bilinear(t.f));
+    }
+    hl_pixel p = hl_look(ids);
+    hl_dsf_taps taps = hl_read_dsf(t.middle);
+    vec4 a = hl_accept(taps, p, hl_threshold(p, 1.0));
+#ifdef HL_FLOAT_LIGHT
+    if (hl_spec_bilinear != 0u && a == vec4(1.0))
+        return hl_filter_light(t);
+#endif
+    if (hl_spec_fill != 0u && a == vec4(0.0))
+        return hl_fill_light(hl_find_lattice(vec2(0.0), 1.0), p, taps);
+    return hl_weigh_light(t.middle, hl_dsf_weights(hl_bilinear(t.f), a));
+}
+
+/* The four nearest samples of the object's own pattern (K 4). What lies in
+ * front may have overwritten some. */
+vec4 hl_read_stippled(vec4 ids)
+{
+    uint pattern = uint(hl_object.flat_ids.z);
+    hl_lattice g = hl_find_lattice(hl_stipple_cell(pattern, hl_spec_stipple),
+                                   float(hl_spec_stipple));
+    vec4 a = vec4(1.0);
+    if (hl_spec_dsf != uint(HL_DSF_OFF)) {
+        hl_pixel p = hl_look(ids);
+        hl_dsf_taps t = hl_fetch_taps(g);
+        a = hl_accept(t, p, hl_threshold(p, g.side));
+        if (hl_spec_fill != 0u && a == vec4(0.0))
+            return hl_fill_light(g, p, t);
+    }
+    vec4 w = hl_stipple_weights(g.f, a, hl_spec_cone != 0u);
+    return hl_fetch_light(hl_texel(g, vec2(0.0, 0.0))) * w.x +
+           hl_fetch_light(hl_texel(g, vec2(1.0, 0.0))) * w.y +
+           hl_fetch_light(hl_texel(g, vec2(0.0, 1.0))) * w.z +
+           hl_fetch_light(hl_texel(g, vec2(1.0, 1.0))) * w.w;
+}
+
 /* ids: the varying HL_VARY_IDS as it comes. */
 hl_lit hl_read_lights(vec4 ids)
 {
     vec4 l;
-    if (hl_spec_dsf == uint(HL_DSF_EXACT)) {
-        l = hl_unpack_light(texelFetch(hl_tex_light, ivec2(gl_FragCoord.xy),
-                                       0));
-    } else {
-        hl_taps t = hl_find_taps();
-        vec4 w = hl_bilinear(t.f);
-        if (hl_spec_dsf != uint(HL_DSF_OFF))
-            w = hl_dsf_weights(w, hl_accept_taps(t, ids));
-        l = hl_weigh_light(t.middle, w);
-    }
+    if (hl_spec_dsf == uint(HL_DSF_DARK))
+        return hl_lit(vec3(0.0), vec3(0.0));
+    if (hl_spec_stipple != 0u)
+        l = hl_read_stippled(ids);
+    else if (hl_spec_dsf == uint(HL_DSF_EXACT))
+        l = hl_fetch_light(ivec2(gl_FragCoord.xy));
+    else
+        l = hl_read_opaque(ids);
     l *= hl_spec_scale;
     return hl_lit(l.rgb, l.rgb * hl_specular_scale(l.rgb, l.a));
 }

@@ -27,6 +27,9 @@ layout(constant_id = HL_SPEC_DEPTH_READ) const uint hl_spec_depth_read = 0u;
 layout(constant_id = HL_SPEC_LIGHT_WIDTH) const float hl_spec_light_w = 1.0;
 layout(constant_id = HL_SPEC_LIGHT_HEIGHT) const float hl_spec_light_h = 1.0;
 layout(location = 0) out vec4 out_light;
+#ifdef HL_SHADOW_MAP
+#include "shaders/shadow.glsl"
+#endif
 
 float hl_read_depth(vec2 uv)
 {
@@ -55,14 +58,28 @@ void main()
                                     hl_unorm_to_snorm(e.y)));
     vec3 v = -p * inversesqrt(dot(p, p));
     float exponent = terms.z;
-    if (hl_spec_specular == uint(HL_SPECULAR_CHANNEL))
+    if (hl_spec_brdfs != 0u) {
+        vec2 pair = hl_two16_decode(hl_spec_two16,
+                                    texture(hl_tex_exponent, uv).xy);
+        hl_lit_skin = hl_brdf_decode(pair.y) == float(HL_BRDF_SKIN_INDEX);
+        if (hl_spec_specular == uint(HL_SPECULAR_CHANNEL))
+            exponent = hl_exponent_decode(pair.x);
+    } else if (hl_spec_specular == uint(HL_SPECULAR_CHANNEL)) {
         exponent = hl_exponent_decode(texture(hl_tex_exponent, uv).x);
+    }
 #ifdef HL_TILES
     ivec2 t = ivec2(gl_FragCoord.xy) / int(hl_frame.misc.y);
     uvec2 list = hl_tiles.tile[t.y * int(hl_frame.misc.z) + t.x];
     hl_sum s = hl_sum_list(p, n, v, exponent, list.x, list.y);
 #else
     hl_sum s = hl_sum_batch(p, n, v, exponent);
+#endif
+#ifdef HL_SHADOW_MAP
+    if (s.diffuse != vec3(0.0)) {
+        float lit = hl_shadow_lit(p, n);
+        s.diffuse *= lit;
+        s.intensity *= lit;
+    }
 #endif
     out_light = min(vec4(s.diffuse, s.intensity) * hl_spec_light_out,
                     vec4(HL_HALF_MAX));

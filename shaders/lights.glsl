@@ -7,12 +7,16 @@ layout(constant_id = HL_SPEC_SPECULAR) const uint hl_spec_specular = 0u;
 layout(constant_id = HL_SPEC_FALLOFF) const uint hl_spec_falloff = 1u;
 layout(constant_id = HL_SPEC_KINDS) const uint hl_spec_kinds = 0u;
 layout(constant_id = HL_SPEC_BATCH) const uint hl_spec_batch = 8u;
+layout(constant_id = HL_SPEC_BRDFS) const uint hl_spec_brdfs = 0u;
 
 struct hl_sum {
     vec3 diffuse;    /* D: sum of c a N.L                                    */
     vec3 specular;   /* S / ks in colour                                     */
     float intensity; /* the same with lum(c): the L-buffer's alpha           */
 };
+
+/* Of the surface that is lit: what to set before sums where hl_spec_brdfs. */
+bool hl_lit_skin = false;
 
 /* One light of hl_light_data layout a, b (and c, d where kinds are mixed)
  * on a surface at view position p with normal n, seen along v. */
@@ -21,7 +25,8 @@ void hl_add_light(inout hl_sum s, vec3 p, vec3 n, vec3 v, float exponent,
 {
     vec3 to = a.xyz - p;
     float d2 = dot(to, to);
-    /* d = 0 gives l = 0, so N.L = 0: such a light adds nothing. */
+    /* d = 0 gives l = 0, so N.L = 0: such a light adds nothing (to skin what
+     * a grazing one adds). */
     vec3 l = to * inversesqrt(max(d2, 1e-20));
     float att;
     if (hl_spec_falloff == 1u)
@@ -36,8 +41,13 @@ void hl_add_light(inout hl_sum s, vec3 p, vec3 n, vec3 v, float exponent,
         l = parallel ? -c.xyz : l;
         att = parallel ? 1.0 : att * hl_spot(-dot(l, c.xyz), c.w, d.x);
     }
-    float ndl = max(dot(n, l), 0.0) * att;
-    s.diffuse += b.xyz * ndl;
+    float cosine = dot(n, l);
+    float ndl = max(cosine, 0.0) * att;
+    if (hl_spec_brdfs != 0u)
+        s.diffuse += b.xyz * (hl_lit_skin ? hl_diffuse_skin(cosine) * att
+                                          : ndl);
+    else
+        s.diffuse += b.xyz * ndl;
     if (hl_spec_specular != 0u) {
         /* (N.H)^n with H = h / |h|, as ((N.h)^2 / h^2)^(n/2): one division
          * in place of a root and a division. */

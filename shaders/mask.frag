@@ -4,4 +4,4 @@
 /* The alpha test alone: masked surfaces in a shadow map. */
 #include "shaders/surface.glsl"
 
-void main() { hl_alpha_test(hl_base_color().a); }
+void main() { hl_alpha_test(hl_surface_alpha()); }

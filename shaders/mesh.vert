@@ -8,6 +8,7 @@
 #include "shaders/shared/block.h"
 #include "shaders/shared/pack.h"
 #include "shaders/half_pixel.glsl"
+#include "shaders/centroid.glsl"
 
 layout(location = HL_ATTR_POSITION) in vec3 in_position;
 invariant gl_Position;
@@ -27,8 +28,8 @@ layout(location = HL_VARY_TANGENT) out vec4 v_tangent;
 #ifdef HL_WITH_UV
 layout(location = HL_ATTR_UV) in vec2 in_uv;
 layout(location = HL_ATTR_COLOR) in vec4 in_color;
-layout(location = HL_VARY_UV) out vec2 v_uv;
-layout(location = HL_VARY_COLOR) out vec4 v_color;
+layout(location = HL_VARY_UV) HL_AT out vec2 v_uv;
+layout(location = HL_VARY_COLOR) HL_AT out vec4 v_color;
 #endif
 #ifdef HL_WITH_PLAIN
 layout(location = HL_VARY_ALBEDO) flat out vec4 v_albedo;
@@ -37,6 +38,15 @@ layout(location = HL_VARY_BASE) flat out vec4 v_base;
 #endif
 #ifdef HL_WITH_POSITION
 layout(location = HL_VARY_POSITION) out vec3 v_position;
+#endif
+#ifdef HL_CENTROID
+layout(location = HL_VARY_CLIP) centroid out vec3 v_clip;
+#endif
+#ifdef HL_MOTION
+layout(set = 0, binding = HL_SLOT_MOTION, std140) uniform hl_motion_block {
+    mat4 before, now;
+} hl_motion;
+layout(location = HL_VARY_MOTION) out vec3 v_motion[2];
 #endif
 
 void main()
@@ -68,5 +78,14 @@ void main()
 #endif
 #ifdef HL_WITH_POSITION
     v_position = (hl_object.model_view * vec4(in_position, 1.0)).xyz;
+#endif
+#ifdef HL_CENTROID
+    /* Not shifted by half a pixel: that shift ends where gl_FragCoord has its
+     * halves, by the machine that asks for it. */
+    v_clip = (hl_object.clip * vec4(in_position, 1.0)).xyw;
+#endif
+#ifdef HL_MOTION
+    v_motion[0] = (hl_motion.now * vec4(in_position, 1.0)).xyw;
+    v_motion[1] = (hl_motion.before * vec4(in_position, 1.0)).xyw;
 #endif
 }

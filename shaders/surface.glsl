@@ -3,6 +3,7 @@
 #include "shaders/shared/block.h"
 #include "shaders/shared/pack.h"
 #include "shaders/shared/shade.h"
+#include "shaders/centroid.glsl"
 
 layout(constant_id = HL_SPEC_MASK) const uint hl_spec_mask = 0u;
 layout(constant_id = HL_SPEC_TEXTURES) const uint hl_spec_textures = 0u;
@@ -17,8 +18,8 @@ struct hl_surface {
 };
 
 #ifdef HL_FULL
-layout(location = HL_VARY_UV) in vec2 v_uv;
-layout(location = HL_VARY_COLOR) in vec4 v_color;
+layout(location = HL_VARY_UV) HL_AT in vec2 v_uv;
+layout(location = HL_VARY_COLOR) HL_AT in vec4 v_color;
 layout(set = 1, binding = HL_TEX_BASE) uniform sampler2D hl_tex_base;
 layout(set = 1, binding = HL_TEX_METAL_ROUGH) uniform sampler2D hl_tex_mr;
 layout(set = 1, binding = HL_TEX_EMISSION) uniform sampler2D hl_tex_emission;
@@ -33,9 +34,13 @@ vec4 hl_base_color()
 
 void hl_alpha_test(float alpha)
 {
-    if (hl_spec_mask != 0u && alpha < hl_material.params.w)
+    if (hl_spec_mask == 1u && alpha < hl_material.params.w)
+        discard;
+    if (hl_spec_mask == 2u && alpha < HL_ALPHA_VISIBLE)
         discard;
 }
+
+float hl_surface_alpha() { return hl_base_color().a; }
 
 hl_surface hl_read_surface()
 {
@@ -60,6 +65,18 @@ hl_surface hl_read_surface()
     s.alpha = base.a;
     return s;
 }
+#endif
+
+#ifndef HL_FULL
+/* Factors alone: nothing is cut from such a surface, but it may be invisible
+ * as a whole. */
+void hl_alpha_test(float alpha)
+{
+    if (hl_spec_mask == 2u && alpha < HL_ALPHA_VISIBLE)
+        discard;
+}
+
+float hl_surface_alpha() { return hl_material.base.a; }
 #endif
 
 #ifdef HL_PLAIN

@@ -133,8 +133,8 @@ static void blended_surfaces_lie_over_in_depth_order(void **state)
     }
 }
 
-/* A blended surface is lit forward in either pipeline, by all its lights in
- * one draw, and is no surface for the G-buffer. */
+/* A blended surface that is lit forward, by all its lights in one draw, is so
+ * in either pipeline, and is no surface for the G-buffer. */
 static void blended_surfaces_are_lit_alike(void **state)
 {
     struct fk_scene s;
@@ -144,6 +144,7 @@ static void blended_surfaces_are_lit_alike(void **state)
     struct hl_item *it = fk_add(&s, FK_BALL, FK_BLENDED, 0, 0, 5, 1.5f);
     fk_material(&s, it)->base[3] = 1;           /* hides what is behind      */
     s.needs.max_error = 1e-4f;                  /* 32 bits                   */
+    s.needs.translucency = HL_TRANSLUCENCY_FORWARD;
     float *forward = fk_draw(&s, HL_PIPELINE_FORWARD, HL_ROLE_NONE);
     float *inferred = fk_draw(&s, HL_PIPELINE_INFERRED, HL_ROLE_NONE);
     uint32_t inside = 0;

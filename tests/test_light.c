@@ -178,8 +178,10 @@ static void check_rect(const struct hl_light *l, const struct hl_camera *cam,
     struct hl_lit_sphere s;
     struct hl_rect r;
     struct hits hit = find_hits(l, cam, w, h);
+    struct hl_span span = hl_span_whole((uint32_t)w, (uint32_t)h, cam,
+                                        (float)w / (float)h);
     bool seen = hl_lights_view(&s, l, 1, cam, (float)w / (float)h) == 1 &&
-                hl_sphere_rect(&r, &s, cam, (uint32_t)w, (uint32_t)h);
+                hl_sphere_rect(&r, &s, &span);
     if (hit.n == 0)
         return;
     if (!seen || hit.x0 < r.x || hit.y0 < r.y || hit.x1 >= r.x + r.width ||
@@ -260,7 +262,8 @@ static void what_cannot_light_is_left_out(void **state)
     assert_int_equal(s[1].light, 3);
     assert_true(s[1].radius < 0);
     struct hl_rect r;
-    assert_true(hl_sphere_rect(&r, &s[1], &cam, 40, 30));
+    struct hl_span span = hl_span_whole(40, 30, &cam, 1.7f);
+    assert_true(hl_sphere_rect(&r, &s[1], &span));
     assert_true(r.x == 0 && r.y == 0 && r.width == 40 && r.height == 30);
 }
 

@@ -191,10 +191,19 @@ static void exponents_decide_the_specular_need(void **state)
     assert_int_equal(measure(&s)->specular, HL_NEED_EXPONENTS);
     s.material[4].no_specular = true;
     assert_int_equal(measure(&s)->specular, HL_NEED_ONE_EXPONENT);
-    /* A blended surface is forward: its own exponent does not matter. */
+    /* A blended surface may be stippled; where it is not, its own exponent
+     * does not matter, but that it has highlights does. */
     s.material[4].no_specular = false;
     s.item[4].surface = 1;
+    assert_int_equal(measure(&s)->specular, HL_NEED_EXPONENTS);
+    s.needs.translucency = HL_TRANSLUCENCY_FORWARD;
     assert_int_equal(measure(&s)->specular, HL_NEED_ONE_EXPONENT);
+    for (int i = 0; i < ITEMS; i++)
+        s.material[i].no_specular = i != 4;
+    assert_int_equal(measure(&s)->specular, HL_NEED_ONE_EXPONENT);
+    for (int i = 0; i < ITEMS; i++)
+        s.material[i].no_specular = false;
+    s.needs.translucency = HL_TRANSLUCENCY_AUTO;
     s.item[4].surface = 2;
     s.material[4].roughness = 0.5f;
     assert_int_equal(measure(&s)->specular, HL_NEED_EXPONENTS);
@@ -205,9 +214,58 @@ static void exponents_decide_the_specular_need(void **state)
     assert_int_equal(measure(&s)->specular, HL_NEED_NO_SPECULAR);
 }
 
+/* By how many boxes of translucent items cover one point. */
+static void layers_are_the_most_over_a_point(void **state)
+{
+    (void)state;
+    struct small s;
+    make(&s);
+    assert_int_equal(measure(&s)->blended_layers, 0);
+    for (int i = 0; i < ITEMS; i++) {
+        s.item[i].surface = 1;
+        assert_int_equal(measure(&s)->blended_layers, 1);
+    }
+    for (int i = 1; i < ITEMS; i++) {          /* in a row, away from us      */
+        s.item[i].world[12] = s.item[0].world[12];
+        s.item[i].world[14] = -20 - 4 * (float)i;
+        assert_int_equal(measure(&s)->blended_layers, i + 1);
+    }
+    s.item[2].surface = 0;
+    assert_int_equal(measure(&s)->blended_layers, ITEMS - 1);
+    s.item[3].world[14] = 20;                  /* behind us                  */
+    assert_int_equal(measure(&s)->blended_layers, ITEMS - 2);
+    /* One far smaller than the grid's cells, alone and before another. */
+    s.frame.n_items = 1;
+    for (int k = 0; k < 3; k++)
+        s.item[0].world[k * 5] = 0.001f;
+    assert_int_equal(measure(&s)->blended_layers, 1);
+    s.frame.n_items = 2;
+    s.item[1].world[14] = -30;
+    s.item[1].world[12] = s.item[0].world[12] * 1.5f;
+    assert_int_equal(measure(&s)->blended_layers, 2);
+}
+
+static void decals_are_seen(void **state)
+{
+    (void)state;
+    struct small s;
+    make(&s);
+    s.surface[1].blended = false;
+    s.surface[1].decal = true;
+    assert_false(measure(&s)->decals);
+    s.item[2].surface = 1;
+    assert_true(measure(&s)->decals);
+    assert_false(s.needs.blended);
+    assert_int_equal(s.needs.blended_layers, 0);
+    s.item[2].surface = 0;
+    assert_false(measure(&s)->decals);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(layers_are_the_most_over_a_point),
+        cmocka_unit_test(decals_are_seen),
         cmocka_unit_test(counts_are_the_frames),
         cmocka_unit_test(choices_are_left_alone),
         cmocka_unit_test(kinds_of_light_are_collected),

@@ -527,11 +527,11 @@ static void the_first_usable_row_is_taken(void **state)
                  HL_FORMAT_NONE);
     assert_true(p.reversed_depth);
     c.format[HL_FORMAT_D32_FLOAT].use = 0;       /* D16 is not in the list   */
+    c.format[HL_FORMAT_D32_FLOAT_S8].use = 0;
     enum hl_refusal why;
     hl_plan_make(&p, HL_PIPELINE_INFERRED, &n, &c, &why);
     assert_int_equal(why, HL_REFUSED_DEPTH_FORMAT);
     c.format[HL_FORMAT_D32_FLOAT_S8].use = HL_USE_SAMPLED | HL_USE_TARGET;
-    c.profile.depth[1].format = HL_FORMAT_D32_FLOAT_S8;
     assert_true(con_plan(HL_PIPELINE_FORWARD, &n, &c).reversed_depth);
     con_caps(&c, &hl_profile_xbox360, false);
     c.format[HL_FORMAT_RG16_SNORM].use = HL_USE_SAMPLED;

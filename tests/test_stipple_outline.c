@@ -111,6 +111,16 @@ static struct hl_camera camera_of(uint64_t *random)
     return cam;
 }
 
+/* On all of a target of WIDTH x HEIGHT. */
+static bool project(struct hl_stipple_outline *o, const float world[16],
+                    const float min[3], const float max[3],
+                    const struct hl_camera *cam)
+{
+    struct hl_span screen = hl_span_whole(WIDTH, HEIGHT, cam,
+                                          (float)WIDTH / HEIGHT);
+    return hl_stipple_project(o, world, min, max, cam, &screen);
+}
+
 /* Random boxes, many across the near plane or the screen's edges. */
 static void boxes_lie_inside_their_outlines(void **state)
 {
@@ -122,8 +132,7 @@ static void boxes_lie_inside_their_outlines(void **state)
         struct box b = random_box(&random, 2, 4, run % 2 ? 1.0f : 3.0f);
         struct hl_stipple_outline o = {0, {0}, {0}};
         struct hl_stipple_object object;
-        bool seen = hl_stipple_project(&o, b.world, b.min, b.max, &cam, WIDTH,
-                                       HEIGHT);
+        bool seen = project(&o, b.world, b.min, b.max, &cam);
         if (seen) {
             assert_true(hl_stipple_outline_good(&o));
             hl_stipple_bound(&object, &o);
@@ -170,8 +179,7 @@ static void outlines_are_tight(void **state)
         if (!whole)
             continue;
         n++;
-        assert_true(hl_stipple_project(&o, b.world, b.min, b.max, &cam, WIDTH,
-                                       HEIGHT));
+        assert_true(project(&o, b.world, b.min, b.max, &cam));
         assert_in_range(o.n_corners, 4, 6);
         for (uint32_t k = 0; k < o.n_corners; k++) {
             double best = 1e9;
@@ -200,25 +208,24 @@ static void known_boxes(void **state)
     struct hl_camera cam;
     (void)state;
     assert_int_equal(hl_camera_look_at(&cam, eye, at, 90, 0.1f, 100), HL_OK);
+    struct hl_span no_width = hl_span_whole(0, HEIGHT, &cam, 1);
+    struct hl_span no_height = hl_span_whole(WIDTH, 0, &cam, 1);
     /* The near face at z = 2: 180 / 2 texels a metre. */
-    assert_true(hl_stipple_project(&o, unit, min, max, &cam, WIDTH, HEIGHT));
+    assert_true(project(&o, unit, min, max, &cam));
     assert_int_equal(o.n_corners, 4);
     for (uint32_t i = 0; i < 4; i++) {
         assert_true(fabs(fabs((double)o.x[i] - 320) - 90) < SLACK);
         assert_true(fabs(fabs((double)o.y[i] - 180) - 45) < SLACK);
     }
-    assert_false(hl_stipple_project(&o, unit, behind0, behind1, &cam, WIDTH,
-                                    HEIGHT));
-    assert_false(hl_stipple_project(&o, unit, left0, left1, &cam, WIDTH,
-                                    HEIGHT));
-    assert_false(hl_stipple_project(&o, unit, flat0, flat1, &cam, WIDTH,
-                                    HEIGHT)); /* on edge: no texel           */
-    assert_false(hl_stipple_project(&o, unit, bad, max, &cam, WIDTH, HEIGHT));
-    assert_false(hl_stipple_project(&o, unit, min, max, &cam, 0, HEIGHT));
-    assert_false(hl_stipple_project(&o, unit, min, max, &cam, WIDTH, 0));
+    assert_false(project(&o, unit, behind0, behind1, &cam));
+    assert_false(project(&o, unit, left0, left1, &cam));
+    /* On edge: no texel. */
+    assert_false(project(&o, unit, flat0, flat1, &cam));
+    assert_false(project(&o, unit, bad, max, &cam));
+    assert_false(hl_stipple_project(&o, unit, min, max, &cam, &no_width));
+    assert_false(hl_stipple_project(&o, unit, min, max, &cam, &no_height));
     /* The eye is inside: all of the screen. */
-    assert_true(hl_stipple_project(&o, unit, around0, around1, &cam, WIDTH,
-                                   HEIGHT));
+    assert_true(project(&o, unit, around0, around1, &cam));
     assert_int_equal(o.n_corners, 4);
     assert_true(fabs(fabs(area(&o)) - WIDTH * HEIGHT) < 1);
 }
@@ -322,8 +329,7 @@ static void outlines_spare_patterns(void **state)
         const float min[3] = { 1.0f * (float)i + 0.05f, -3, -3 };
         const float max[3] = { 1.0f * (float)i + 0.95f, -3, -1 };
         objects[i].id = i;
-        assert_true(hl_stipple_project(&outlines[i], unit, min, max, &cam,
-                                       WIDTH, HEIGHT));
+        assert_true(project(&outlines[i], unit, min, max, &cam));
         hl_stipple_bound(&objects[i], &outlines[i]);
     }
     frame.objects = objects;

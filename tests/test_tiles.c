@@ -75,15 +75,12 @@ static void make_world(struct world *w, uint64_t *seed, uint32_t tile,
                                   (float)W / H);
     make_depth(w, seed, reversed);
     struct hl_tile_grid *g = &w->grid;
-    g->w = W;
-    g->h = H;
+    g->span = hl_span_whole(W, H, &w->cam, (float)W / H);
     g->tile = tile;
     g->nx = (W + tile - 1) / tile;
     g->ny = (H + tile - 1) / tile;
     assert_true(g->nx * g->ny <= MAX_TILES);
-    g->tan_y = w->cam.tan_half_y;
-    g->tan_x = w->cam.tan_half_y * W / H;
-    hl_tiles_depth(w->z0, w->z1, w->d, W, H, tile, w->a, w->b, w->clear);
+    hl_tiles_depth(w->z0, w->z1, g, w->d, W, w->a, w->b, w->clear);
 }
 
 static uint32_t fill(struct world *w, bool with_depth)

@@ -43,6 +43,7 @@ static void material_of(struct hl_material *out, const struct hlh_material *m,
     out->normal_scale = m->normal_scale;
     out->alpha_cutoff = m->alpha_cutoff;
     out->no_specular = o->no_specular;
+    out->brdf = m->brdf == HLH_BRDF_SKIN ? HL_BRDF_SKIN : HL_BRDF_BLINN_PHONG;
 }
 
 static void light_of(struct hl_light *out, const struct hlh_light *l)
@@ -58,6 +59,7 @@ static void light_of(struct hl_light *out, const struct hlh_light *l)
     out->radius = l->radius;
     out->inner = l->inner_angle;
     out->outer = l->outer_angle;
+    out->shadow = l->shadow;
 }
 
 static bool make_materials_and_lights(struct hlc_bridge *b)
@@ -94,7 +96,8 @@ static bool same_surface(const struct hl_surface *a,
             return false;
     return a->textures == b->textures && a->vertex_color == b->vertex_color &&
            a->masked == b->masked && a->blended == b->blended &&
-           a->two_sided == b->two_sided && a->mirrored == b->mirrored;
+           a->decal == b->decal && a->two_sided == b->two_sided &&
+           a->mirrored == b->mirrored;
 }
 
 /* Surfaces are kinds of program: few, so a search through them will do. */
@@ -107,7 +110,8 @@ static uint32_t surface_of(struct hlc_world *w, const struct hlc_part *part,
     s.textures = part->textures;
     s.vertex_color = part->layout == HLC_LAYOUT_COLORED;
     s.masked = part->masked;
-    s.blended = m->alpha == HLH_ALPHA_BLEND;
+    s.blended = part->blended;
+    s.decal = part->decal;
     s.two_sided = m->double_sided;
     s.mirrored = mirrored;
     uint32_t i = 0;
@@ -165,6 +169,8 @@ static void add_item(struct hlc_bridge *b, uint32_t object)
     memcpy(item->bounds_min, part->min, sizeof item->bounds_min);
     memcpy(item->bounds_max, part->max, sizeof item->bounds_max);
     item->material = &w->materials[material];
+    item->name = object + 1;
+    item->no_shadow = o->no_shadow;
     bind_textures(item, w, part, m);
 }
 
@@ -196,7 +202,8 @@ bool hlc_world_create(struct hlc_world *out, struct hl_device *device,
     out->scene = scene;
     bool ok = hlc_parts_prepare(&b) && hlc_textures_upload(&b) &&
               make_materials_and_lights(&b) && make_items(&b) &&
-              hlc_ids_number(&b) && hlc_parts_upload(&b);
+              hlc_ids_number(&b) && hlc_parts_upload(&b) &&
+              hlc_shadows_make(&b);
     hlc_parts_free(&b);
     if (!ok)
         hlc_world_free(out);
@@ -209,6 +216,7 @@ void hlc_world_free(struct hlc_world *w)
         hl_buf_destroy(w->device, &w->buffers[i]);
     for (size_t i = 0; w->textures && i < 2 * (size_t)w->scene->n_images; i++)
         hl_tex_destroy(w->device, &w->textures[i]);
+    hlc_shadows_free(w);
     free(w->textures);
     free(w->items);
     free(w->item_object);

@@ -4,8 +4,9 @@
 /* From a scene (platforms/host) to what a frame is given: buffers, textures,
  * surfaces, items, lights, a camera. An embedder like any other: nothing but
  * public headers is used. Reading order: bridge_mesh.c, bridge_texture.c,
- * bridge_ids.c, bridge.c, view.c. */
+ * bridge_ids.c, bridge_shadow.c, bridge.c, view.c. */
 #include "core/halflight.h"
+#include "core/shadow_mesh.h"
 #include "platforms/cli/options.h"
 #include "platforms/host/scene.h"
 
@@ -17,6 +18,7 @@ struct hlc_world_options {
     bool no_specular;            /* every material drops ks S                */
     enum hlc_ids_scheme ids;
     uint32_t ids_seed;           /* of HLC_IDS_PAPER; any number             */
+    bool shadow_volumes;         /* prepare what casts shadows for them      */
 };
 
 /* How regions were numbered. Collisions: neighbouring regions that share an
@@ -28,6 +30,13 @@ struct hlc_ids_report {
     uint64_t regions;            /* normal groups, summed over objects       */
     uint32_t highest;            /* id                                       */
     uint64_t collisions;
+};
+
+/* Of a scene mesh that casts shadow volumes. */
+struct hlc_shadow {
+    struct hl_shadow_mesh mesh;
+    hl_buf vertices;
+    bool made;
 };
 
 enum { HLC_WORLD_BUFFERS = 16 };
@@ -46,6 +55,7 @@ struct hlc_world {
     hl_tex *textures;                  /* [2 i] image i as sRGB, [2 i + 1]
                                         * as linear; {0}: not used           */
     hl_buf buffers[HLC_WORLD_BUFFERS];
+    struct hlc_shadow *shadows;        /* one a mesh; NULL: no volumes       */
     struct hlc_ids_report ids;
     uint64_t bytes;                    /* of buffers and textures            */
 };

@@ -65,9 +65,12 @@ static void classify(struct hlc_part *part, const struct hlh_mesh *mesh,
 {
     bool colored = is_colored(mesh);
     bool constant = m->base_texture.image < 0 && !colored;
+    bool masked = m->alpha == HLH_ALPHA_MASK && !m->decal;
     part->textures = textures_of(m, o);
-    part->masked = m->alpha == HLH_ALPHA_MASK && !constant;
-    part->hidden = m->alpha == HLH_ALPHA_MASK && constant &&
+    part->masked = masked && !constant;
+    part->decal = m->decal;
+    part->blended = !m->decal && (m->alpha == HLH_ALPHA_BLEND || m->fence);
+    part->hidden = masked && constant && !m->fence &&
                    !(m->base_color[3] >= m->alpha_cutoff);
     part->layout = colored ? HLC_LAYOUT_COLORED
                    : part->textures || part->masked ? HLC_LAYOUT_FULL

@@ -20,7 +20,7 @@ struct hlc_part {
     uint32_t *code;              /* of a group: what tangent.w carries       */
     uint32_t *color;             /* of a group; NULL: not coloured           */
     uint32_t n_colors;
-    bool used, masked;
+    bool used, masked, blended, decal; /* of its surface                     */
     bool hidden;                 /* the mask drops every pixel of it         */
     enum hlc_layout layout;
     uint32_t textures;           /* HL_TEXTURED_* bits                       */
@@ -51,6 +51,10 @@ void hlc_layout_describe(struct hl_vertex_layout *out, enum hlc_layout);
 
 /* bridge_ids.c: id_base of every item, code of every group, world->ids. */
 bool hlc_ids_number(struct hlc_bridge *b);
+
+/* bridge_shadow.c: shadow meshes of the items that cast. */
+bool hlc_shadows_make(struct hlc_bridge *b);
+void hlc_shadows_free(struct hlc_world *world);
 
 /* bridge_texture.c */
 bool hlc_textures_upload(struct hlc_bridge *b);

@@ -59,6 +59,11 @@ static void add_needs(cJSON *tree, const struct hl_needs *n)
     cJSON_AddBoolToObject(j, "cones", (n->lights & HL_LIGHTS_CONES) != 0);
     cJSON_AddStringToObject(j, "specular", specular_need(n->specular));
     cJSON_AddBoolToObject(j, "blended", n->blended);
+    hlc_json_uint(j, "blended_layers", n->blended_layers);
+    cJSON_AddBoolToObject(j, "decals", n->decals);
+    cJSON_AddBoolToObject(j, "brdfs", n->brdfs);
+    hlc_json_uint(j, "shadow_lights", n->n_shadow_lights);
+    cJSON_AddBoolToObject(j, "shadow_points", n->shadow_points);
     hlc_json_real(j, "far", (double)n->far, 9);
     hlc_json_real(j, "peak", (double)n->peak, 6);
     hlc_json_real(j, "max_error",

@@ -142,6 +142,7 @@ int hlc_cmd_render(const struct hlc_options *o)
         free(r->inside.ids);
         free(r->inside.lights);
         free(r->inside.rejects);
+        free(r->inside.stipple);
         hlh_scene_free(&r->scene);
     }
     free(r);

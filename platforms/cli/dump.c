@@ -2,22 +2,13 @@
 /* --dump: every target of a frame, once as a picture to look at (PNG) and
  * once as exact numbers (PFM, 16-bit PNG), and an index that says what each
  * one is. */
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include "platforms/cli/dump.h"
 #include "platforms/cli/plan_text.h"
 #include "platforms/cli/readback.h"
-#include "platforms/cli/render.h"
-#include "platforms/host/util.h"
 #include "shaders/shared/pack.h"
-
-struct dump {
-    struct hlc_render *r;
-    struct hlc_outputs *files;
-    struct hlh_error *error;
-    struct hlh_buffer index;
-};
 
 /* What a texel looks like: v is the stored texel, its pair of numbers where
  * the role has one; rgb what is written. */
@@ -26,7 +17,7 @@ typedef void (*look)(const struct hlc_render *, const float v[4],
 
 /* ---- files ------------------------------------------------------------- */
 
-static char *path_of(const struct dump *d, const char *name)
+static char *path_of(const struct hlc_dump *d, const char *name)
 {
     size_t bytes = strlen(d->r->o->dump) + strlen(name) + 2;
     char *path = malloc(bytes);
@@ -35,7 +26,7 @@ static char *path_of(const struct dump *d, const char *name)
     return path;
 }
 
-static bool start(struct dump *d, const char *name, const char *what,
+static bool start(struct hlc_dump *d, const char *name, const char *what,
                   char **path)
 {
     *path = path_of(d, name);
@@ -43,7 +34,7 @@ static bool start(struct dump *d, const char *name, const char *what,
     return *path || hlh_fail(d->error, name, "out of memory");
 }
 
-static bool finish(struct dump *d, char *path, bool ok)
+static bool finish(struct hlc_dump *d, char *path, bool ok)
 {
     if (ok)
         hlc_outputs_add(d->files, path);
@@ -51,8 +42,8 @@ static bool finish(struct dump *d, char *path, bool ok)
     return ok;
 }
 
-static bool write_picture(struct dump *d, const char *name, const char *what,
-                          const struct hlh_picture *p, double exposure)
+bool hlc_dump_picture(struct hlc_dump *d, const char *name, const char *what,
+                      const struct hlh_picture *p, double exposure)
 {
     char *path;
     size_t n = strlen(name);
@@ -64,61 +55,13 @@ static bool write_picture(struct dump *d, const char *name, const char *what,
                                                        d->error));
 }
 
-static bool write_ids(struct dump *d, const char *name, const char *what,
+static bool write_ids(struct hlc_dump *d, const char *name, const char *what,
                       const uint32_t *ids, uint32_t w, uint32_t h)
 {
     char *path;
     if (!start(d, name, what, &path))
         return false;
     return finish(d, path, hlh_ids_write_png(ids, w, h, path, d->error));
-}
-
-/* ---- colours ----------------------------------------------------------- */
-
-/* PNGs are written as sRGB: what is to be seen as code c is given as its
- * linear light. */
-static float shown(float c)
-{
-    float x = c < 0 ? 0 : c > 1 ? 1 : c;
-    return x <= 0.04045f ? x / 12.92f
-                         : (float)pow((x + 0.055) / 1.055, 2.4);
-}
-
-static void show3(float rgb[3], float r, float g, float b)
-{
-    rgb[0] = shown(r);
-    rgb[1] = shown(g);
-    rgb[2] = shown(b);
-}
-
-/* A colour of its own for each number; 0 is black. */
-static void show_id(float rgb[3], uint32_t id)
-{
-    uint32_t x = id * UINT32_C(0x9E3779B1);
-    x = (x ^ x >> 15) * UINT32_C(0x85EBCA77);
-    x ^= x >> 13;
-    if (id == 0)
-        show3(rgb, 0, 0, 0);
-    else
-        show3(rgb, (float)(64 + (x & 191u)) / 255.0f,
-              (float)(64 + (x >> 8 & 191u)) / 255.0f,
-              (float)(64 + (x >> 16 & 191u)) / 255.0f);
-}
-
-/* 0 black, then blue, cyan, green, yellow, red, 1 white. */
-static void show_heat(float rgb[3], float x)
-{
-    static const float ramp[7][3] = {
-        { 0, 0, 0 }, { 0.1f, 0.1f, 0.8f }, { 0, 0.7f, 0.8f },
-        { 0.1f, 0.7f, 0.1f }, { 0.95f, 0.9f, 0.1f }, { 0.9f, 0.15f, 0.1f },
-        { 1, 1, 1 }
-    };
-    float t = (x < 0 ? 0 : x > 1 ? 1 : x) * 6;
-    int i = t < 5 ? (int)t : 5;
-    float f = t - (float)i;
-    show3(rgb, ramp[i][0] + f * (ramp[i + 1][0] - ramp[i][0]),
-          ramp[i][1] + f * (ramp[i + 1][1] - ramp[i][1]),
-          ramp[i][2] + f * (ramp[i + 1][2] - ramp[i][2]));
 }
 
 /* ---- what texels mean -------------------------------------------------- */
@@ -135,14 +78,14 @@ static void as_normal(const struct hlc_render *r, const float v[4],
     (void)r;
     hl_vec3 n = hl_normal_decode(hl_v2(hl_unorm_to_snorm(v[0]),
                                        hl_unorm_to_snorm(v[1])));
-    show3(rgb, n.x * 0.5f + 0.5f, n.y * 0.5f + 0.5f, n.z * 0.5f + 0.5f);
+    hlc_show3(rgb, n.x * 0.5f + 0.5f, n.y * 0.5f + 0.5f, n.z * 0.5f + 0.5f);
 }
 
 static void as_dsf_depth(const struct hlc_render *r, const float v[4],
                          float rgb[3])
 {
     (void)r;
-    show3(rgb, v[0], v[0], v[0]);
+    hlc_show3(rgb, v[0], v[0], v[0]);
 }
 
 static void as_metres(const struct hlc_render *r, const float v[4],
@@ -159,7 +102,7 @@ static uint32_t region_of(const struct hlc_render *r, const float v[4])
 static void as_region(const struct hlc_render *r, const float v[4],
                       float rgb[3])
 {
-    show_id(rgb, region_of(r, v));
+    hlc_show_id(rgb, region_of(r, v));
 }
 
 static void as_exponent(const struct hlc_render *r, const float v[4],
@@ -173,7 +116,7 @@ static void as_level(const struct hlc_render *r, const float v[4],
                      float rgb[3])
 {
     (void)r;
-    show3(rgb, v[0], v[0], v[0]);
+    hlc_show3(rgb, v[0], v[0], v[0]);
 }
 
 static void as_diffuse(const struct hlc_render *r, const float v[4],
@@ -189,6 +132,23 @@ static void as_specular(const struct hlc_render *r, const float v[4],
     rgb[0] = rgb[1] = rgb[2] = v[3] * r->plan.light_scale;
 }
 
+/* Saturates at a sixteenth of the screen. */
+static void as_motion(const struct hlc_render *r, const float v[4],
+                      float rgb[3])
+{
+    (void)r;
+    hlc_show3(rgb, 0.5f + 4 * hl_motion_decode(v[0]),
+              0.5f - 4 * hl_motion_decode(v[1]), 0.5f);
+}
+
+static void as_pixels(const struct hlc_render *r, const float v[4],
+                      float rgb[3])
+{
+    rgb[0] = hl_motion_decode(v[0]) * 0.5f * (float)r->plan.width;
+    rgb[1] = hl_motion_decode(v[1]) * -0.5f * (float)r->plan.height;
+    rgb[2] = 0;
+}
+
 /* Device depth to metres, as core/frame_data.c lays it out. */
 static void as_z(const struct hlc_render *r, const float v[4], float rgb[3])
 {
@@ -202,7 +162,7 @@ static void as_z_share(const struct hlc_render *r, const float v[4],
                        float rgb[3])
 {
     as_z(r, v, rgb);
-    show3(rgb, rgb[0] / (float)r->far, rgb[0] / (float)r->far,
+    hlc_show3(rgb, rgb[0] / (float)r->far, rgb[0] / (float)r->far,
           rgb[0] / (float)r->far);
 }
 
@@ -227,6 +187,11 @@ static const struct target_file {
       "1, white 256", as_level, false },
     { HL_ROLE_EXPONENT, "exponent.pfm", "specular exponent, 1 to 256",
       as_exponent, false },
+    { HL_ROLE_MOTION, "motion.png", "screen motion: grey is still, red to the "
+      "right, green down; a sixteenth of the screen is the most", as_motion,
+      false },
+    { HL_ROLE_MOTION, "motion.pfm", "the same in pixels right and down",
+      as_pixels, false },
     { HL_ROLE_LIGHT_DEPTH, "light_depth.png", "depth buffer at L-buffer size, "
       "made linear", as_z_share, false },
     { HL_ROLE_LIGHT_DEPTH, "light_depth.pfm", "the same in metres", as_z,
@@ -248,17 +213,24 @@ static const struct target_file {
     { HL_ROLE_DEPTH, "frame_depth.pfm", "the same in metres", as_z, false },
 };
 
-static void texel_of(const struct dump *d, const struct hlc_texels *t,
+/* Roles that keep a pair of numbers a texel. */
+static bool is_pair(const struct hl_plan *p, enum hl_role role)
+{
+    return role == HL_ROLE_NORMAL || role == HL_ROLE_DSF ||
+           role == HL_ROLE_MOTION || (role == HL_ROLE_EXPONENT && p->brdfs);
+}
+
+static void texel_of(const struct hlc_dump *d, const struct hlc_texels *t,
                      enum hl_role role, size_t i, float v[4])
 {
     hlc_texel(v, t, i);
-    if (role != HL_ROLE_NORMAL && role != HL_ROLE_DSF)
+    if (!is_pair(&d->r->plan, role))
         return;
     hlc_two16(v, d->r->plan.two16, v);
     v[2] = 0;
 }
 
-static bool dump_look(struct dump *d, const struct hlc_texels *t,
+static bool dump_look(struct hlc_dump *d, const struct hlc_texels *t,
                       const struct target_file *f)
 {
     size_t n = (size_t)t->width * t->height;
@@ -271,13 +243,13 @@ static bool dump_look(struct dump *d, const struct hlc_texels *t,
         texel_of(d, t, f->role, i, v);
         f->look(d->r, v, p.rgb + 3 * i);
     }
-    bool ok = write_picture(d, f->name, f->what, &p,
+    bool ok = hlc_dump_picture(d, f->name, f->what, &p,
                             f->light ? d->r->o->exposure : 0);
     free(p.rgb);
     return ok;
 }
 
-static bool dump_regions(struct dump *d, const struct hlc_texels *t)
+static bool dump_regions(struct hlc_dump *d, const struct hlc_texels *t)
 {
     size_t n = (size_t)t->width * t->height;
     uint32_t *ids = malloc(n * sizeof *ids);
@@ -294,7 +266,7 @@ static bool dump_regions(struct dump *d, const struct hlc_texels *t)
     return ok;
 }
 
-static bool dump_target(struct dump *d, const struct hl_plan_target *target)
+static bool dump_target(struct hlc_dump *d, const struct hl_plan_target *target)
 {
     struct hlc_texels t;
     bool ok = true;
@@ -312,73 +284,13 @@ static bool dump_target(struct dump *d, const struct hl_plan_target *target)
             ok = ok && dump_look(d, &t, &target_files[i]);
     if (target->role == HL_ROLE_DSF)
         ok = ok && dump_regions(d, &t);
+    if (target->role == HL_ROLE_SHADOW_MAP)
+        ok = ok && hlc_dump_shadow_map(d, &t);
     hlc_texels_free(&t);
     return ok;
 }
 
-/* ---- statistics -------------------------------------------------------- */
-
-static bool dump_ids(struct dump *d)
-{
-    uint32_t w = d->r->picture.width, h = d->r->picture.height;
-    size_t n = (size_t)w * h;
-    struct hlh_picture p = { w, h, malloc(n * 3 * sizeof(float)), true };
-    if (!p.rgb)
-        return hlh_fail(d->error, "ids.png", "out of memory");
-    for (size_t i = 0; i < n; i++)
-        show_id(p.rgb + 3 * i, d->r->inside.ids[i]);
-    bool ok = write_picture(d, "ids.png", "objects and their normal groups, "
-                            "a colour each", &p, 0);
-    free(p.rgb);
-    return ok;
-}
-
-static bool dump_lights(struct dump *d)
-{
-    const struct hlc_inside *in = &d->r->inside;
-    size_t n = (size_t)in->lights_width * in->lights_height;
-    struct hlh_picture p = { in->lights_width, in->lights_height,
-                             malloc(n * 3 * sizeof(float)), true };
-    float most = 1;
-    char what[80];
-    if (!p.rgb)
-        return hlh_fail(d->error, "lights.png", "out of memory");
-    for (size_t i = 0; i < n; i++)
-        most = in->lights[i] > most ? in->lights[i] : most;
-    for (size_t i = 0; i < n; i++)
-        show_heat(p.rgb + 3 * i, in->lights[i] / most);
-    snprintf(what, sizeof what, "light evaluations a pixel: black 0, blue, "
-             "green, red, white %.0f", (double)most);
-    bool ok = write_picture(d, "lights.png", what, &p, 0);
-    for (size_t i = 0; i < 3 * n; i++)
-        p.rgb[i] = in->lights[i / 3];
-    ok = ok && write_picture(d, "lights.pfm", "the same, as numbers", &p, 0);
-    free(p.rgb);
-    return ok;
-}
-
-static bool dump_rejects(struct dump *d)
-{
-    static const float colors[6][3] = {
-        { 0, 0, 0 }, { 0.25f, 0.25f, 0.25f }, { 0.1f, 0.4f, 0.9f },
-        { 0.1f, 0.75f, 0.3f }, { 0.95f, 0.8f, 0.1f }, { 0.9f, 0.1f, 0.1f }
-    };
-    uint32_t w = d->r->picture.width, h = d->r->picture.height;
-    size_t n = (size_t)w * h;
-    struct hlh_picture p = { w, h, malloc(n * 3 * sizeof(float)), true };
-    if (!p.rgb)
-        return hlh_fail(d->error, "rejects.png", "out of memory");
-    for (size_t i = 0; i < n; i++) {
-        const float *c = colors[d->r->inside.rejects[i] % 6];
-        show3(p.rgb + 3 * i, c[0], c[1], c[2]);
-    }
-    bool ok = write_picture(d, "rejects.png", "DSF taps rejected: grey 0, "
-                            "blue 1, green 2, yellow 3, red all 4", &p, 0);
-    free(p.rgb);
-    return ok;
-}
-
-static bool dump_index(struct dump *d)
+static bool dump_index(struct hlc_dump *d)
 {
     char *path = path_of(d, "index.txt");
     bool ok = path && !d->index.failed;
@@ -392,17 +304,15 @@ static bool dump_index(struct dump *d)
 bool hlc_dump(struct hlc_render *r, struct hlc_outputs *files,
               struct hlh_error *error)
 {
-    struct dump d = { r, files, error, { NULL, 0, 0, false } };
-    const struct hlc_inside *in = &r->inside;
+    struct hlc_dump d = { r, files, error, { NULL, 0, 0, false } };
     bool ok = hlc_outputs_folder(files, r->o->dump, error) &&
-              write_picture(&d, "frame.png", "the picture, as --out",
+              hlc_dump_picture(&d, "frame.png", "the picture, as --out",
                             &r->picture, r->o->exposure) &&
-              write_picture(&d, "frame.pfm", "the picture, linear",
+              hlc_dump_picture(&d, "frame.pfm", "the picture, linear",
                             &r->picture, 0);
     for (uint32_t i = 0; ok && i < r->plan.n_targets; i++)
         ok = dump_target(&d, &r->plan.target[i]);
-    ok = ok && (!in->ids || dump_ids(&d)) && (!in->lights || dump_lights(&d))
-         && (!in->rejects || dump_rejects(&d)) && dump_index(&d);
+    ok = ok && hlc_dump_inside(&d) && dump_index(&d);
     hlh_buffer_free(&d.index);
     return ok;
 }

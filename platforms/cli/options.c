@@ -3,18 +3,9 @@
 #include <stddef.h>
 #include <stdio.h>
 #include <string.h>
-#include "hal/hal.h"
 #include "platforms/cli/commands.h"
-#include "platforms/cli/value.h"
-#include "platforms/platforms.h"
+#include "platforms/cli/option.h"
 #include "shaders/shared/block.h"
-
-enum kind {                  /* how a value is read and where it goes        */
-    FLAG, TEXT, COUNT, REAL, SIZE,               /* straight into the member */
-    BACKEND, PROFILE, PIPELINE, SAMPLES, CAMERA, AMBIENT, BACKGROUND,
-    LIGHTS_MODE, DSF, LIGHT_PATH, TILE_DEPTH, SCISSOR, IDS_SCHEME,
-    LIGHT_FORMAT, MIN_PSNR, MAX_ERROR, GL_CONTEXT, HALF_PIXEL
-};
 
 #define R (1u << HLC_RENDER)
 #define P (1u << HLC_PLAN)
@@ -23,18 +14,8 @@ enum kind {                  /* how a value is read and where it goes        */
 #define C (1u << HLC_COMPARE)
 #define F (1u << HLC_CONFORM)
 #define AT(member) offsetof(struct hlc_options, member)
-#define FLOAT_RANGE 1e9      /* well inside float, and metres enough         */
 
-struct row {
-    const char *name, *value; /* words are "a|b", NULL for a flag            */
-    enum kind kind;
-    unsigned commands;
-    size_t at;
-    double low, high;
-    const char *help;
-};
-
-static const struct row rows[] = {
+static const struct hlc_option rows[] = {
     { "backend", "vulkan|gl|packemu|null", BACKEND, R | P | D | F, 0, 0, 0,
       "default: the first that has a device" },
     { "device", "N|NAME", TEXT, R | P | F, AT(device), 0, 0,
@@ -54,8 +35,8 @@ static const struct row rows[] = {
     { "samples", "1|2|4|8", SAMPLES, R | P, 0, 0, 0, "a pixel; default 1" },
     { "camera", "ex,ey,ez,tx,ty,tz,vfov", CAMERA, R | P, 0, 0, 0,
       "eye, target, degrees; --camera=-1,... where it begins with a minus" },
-    { "near", "METRES", REAL, R | P, AT(near), 1e-6, FLOAT_RANGE, "" },
-    { "far", "METRES", REAL, R | P, AT(far), 1e-6, FLOAT_RANGE,
+    { "near", "METRES", REAL, R | P, AT(near), 1e-6, HLC_FLOAT_RANGE, "" },
+    { "far", "METRES", REAL, R | P, AT(far), 1e-6, HLC_FLOAT_RANGE,
       "default: by the scene's bounds" },
     { "lights", "FILE.csv", TEXT, R | P | S, AT(lights), 0, 0,
       "x,y,z,radius,r,g,b a line" },
@@ -68,13 +49,30 @@ static const struct row rows[] = {
     { "max-error", "E", MAX_ERROR, R | P | C, 0, 0, 0,
       "render, plan: 8-bit codes a plan may be off; compare: largest linear "
       "difference that passes" },
-    { "light-path", "auto|rects|tiles|lists", LIGHT_PATH, R | P, 0, 0, 0,
-      "how the light pass finds its lights" },
+    { "light-path", "auto|rects|tiles|lists|volumes", LIGHT_PATH, R | P, 0,
+      0, 0, "how the light pass finds its lights" },
     { "light-batch", "K", COUNT, R | P, AT(light_batch), 1, HL_BATCH_MAX,
       "lights a draw" },
     { "tile", "N", COUNT, R | P, AT(tile), 8, 256, "texels a side" },
     { "tile-depth", "on|off", TILE_DEPTH, R | P, 0, 0, 0,
       "may lists be bounded by depth; default on" },
+    { "volume-texels", "N", COUNT, R | P, AT(volume_texels), 1, 1e9,
+      "light path volumes: smaller lights get no stencil volume" },
+    { "shadows", "none|volumes|maps", SHADOWS, R | P, 0, 0, 0,
+      "of lights that cast them; default none, reference: drawn" },
+    { "shadow-size", "N", COUNT, R | P, AT(shadow_size), 16, 8192,
+      "texels a side of a shadow map; default 1024" },
+    { "shadow-lights", "all|scene", SHADOW_LIGHTS, R | P, 0, 0, 0,
+      "which lights cast shadows; default: those that the scene says" },
+    { "translucency", "auto|forward|2x2|4x4", TRANSLUCENCY, R | P, 0, 0, 0,
+      "how translucent surfaces are lit: in their draws, or stippled" },
+    { "stipple", "best|user|depth|depth-free", STIPPLE, R | P, 0, 0, 0,
+      "who gets which pattern; default best" },
+    { "stipple-filter", "auto|cone|bilinear", STIPPLE_FILTER, R | P, 0, 0, 0,
+      "of light that is read through a pattern" },
+    { "mask", "test|blend", MASK, R | P | S, 0, 0, 0,
+      "masked surfaces: all alpha tested, or all blended; default: as the "
+      "scene says" },
     { "scissor", "on|off", SCISSOR, R | P, 0, 0, 0,
       "of forward-multipass; default on" },
     { "half-pixel", "auto|none|state|vertex", HALF_PIXEL, R | P, 0, 0, 0,
@@ -88,6 +86,18 @@ static const struct row rows[] = {
       "24 drawings that collide in sight in fig7" },
     { "dsf", "auto|off|slope|constant", DSF, R | P, 0, 0, 0,
       "filter of the light buffer" },
+    { "fill", "auto|nearest|bilinear", FILL, R | P, 0, 0, 0,
+      "what a pixel reads whose taps are all rejected" },
+    { "fetch", "auto|gather|bilinear", FETCH, R | P, 0, 0, 0,
+      "how the filter fetches light" },
+    { "centroid", "on|off", CENTROID, R | P, 0, 0, 0,
+      "with samples: interpolate where the surface covers; default on" },
+    { "motion", NULL, FLAG, R | P, AT(motion), 0, 0,
+      "a channel of motion vectors" },
+    { "jitter", "X,Y", JITTER, R | P, 0, 0, 0,
+      "pixels that the picture moves right and down, -1 to 1" },
+    { "part", "WxH", SIZE, R, AT(part_width), 1, HLC_SIZE_MAX,
+      "of the size that is drawn, from the top left on" },
     { "dsf-k", "K", REAL, R | P, AT(dsf_k), 1e-3, 1e3,
       "slope factor; 1.1 at least keeps a tilted surface whole" },
     { "dsf-c", "C", REAL, R | P, AT(dsf_c), 1e-9, 1, "share of depth" },
@@ -143,190 +153,9 @@ static const struct command commands[HLC_COMMAND_COUNT] = {
                       "check formats, packing and blending on a device" },
 };
 
-/* ---- reading one value -------------------------------------------------- */
-
-static int bad(const struct row *r, const char *value, const char *what)
-{
-    return hlc_fail(HLC_BAD, "--%s %s: %s", r->name, value, what);
-}
-
-static int take_count(void *at, const struct row *r, const char *value)
-{
-    uint32_t v;
-    if (!hlc_read_count(&v, value) || v < r->low || v > r->high)
-        return hlc_fail(HLC_BAD, "--%s %s: must be a whole number from %g to "
-                        "%g", r->name, value, r->low, r->high);
-    memcpy(at, &v, sizeof v);
-    return 0;
-}
-
-static int take_real(void *at, const struct row *r, const char *value)
-{
-    double v;
-    if (!hlc_read_real(&v, value) || v < r->low || v > r->high)
-        return hlc_fail(HLC_BAD, "--%s %s: must be a number from %g to %g",
-                        r->name, value, r->low, r->high);
-    memcpy(at, &v, sizeof v);
-    return 0;
-}
-
-/* at: width and height, one behind the other. */
-static int take_size(void *at, const struct row *r, const char *value)
-{
-    uint32_t v[2];
-    if (!hlc_read_size(&v[0], &v[1], value) || !v[0] || !v[1])
-        return bad(r, value, "must be WxH, whole numbers from 1");
-    if (v[0] > HLC_SIZE_MAX || v[1] > HLC_SIZE_MAX)
-        return hlc_fail(HLC_BAD, "--%s %s: the limit is %d a side", r->name,
-                        value, HLC_SIZE_MAX);
-    memcpy(at, v, sizeof v);
-    return 0;
-}
-
-static int take_color(double *out, bool *has, const struct row *r,
-                      const char *value)
-{
-    double v[3];
-    if (!hlc_read_reals(v, 3, value))
-        return bad(r, value, "must be three numbers r,g,b");
-    for (int i = 0; i < 3; i++)
-        if (v[i] < 0 || v[i] > FLOAT_RANGE)
-            return bad(r, value, "must be from 0 to 1e9");
-    memcpy(out, v, sizeof v);
-    *has = true;
-    return 0;
-}
-
-static int take_camera(struct hlc_options *o, const struct row *r,
-                       const char *value)
-{
-    double v[7];
-    bool same = true;
-    if (!hlc_read_reals(v, 7, value))
-        return bad(r, value, "must be seven numbers ex,ey,ez,tx,ty,tz,vfov");
-    for (int i = 0; i < 6; i++)
-        if (v[i] < -FLOAT_RANGE || v[i] > FLOAT_RANGE)
-            return bad(r, value, "positions must be within 1e9");
-    if (v[6] <= 0 || v[6] >= 180)
-        return bad(r, value, "vfov must be above 0 and below 180 degrees");
-    for (int i = 0; i < 3; i++)
-        same = same && (float)v[i] == (float)v[i + 3];
-    if (same)
-        return bad(r, value, "eye and target are one point");
-    memcpy(o->eye, v, sizeof o->eye);
-    memcpy(o->target, v + 3, sizeof o->target);
-    o->vfov = v[6];
-    o->has_camera = true;
-    return 0;
-}
-
-/* Names of the backends in this build, "vulkan, null". */
-static void backend_names(char *out, size_t bytes)
-{
-    size_t used = 0;
-    out[0] = 0;
-    for (uint32_t i = 0; hl_platform(i) && used < bytes; i++)
-        used += (size_t)snprintf(out + used, bytes - used, "%s%s",
-                                 i ? ", " : "", hl_platform(i)->name);
-}
-
-static int take_backend(struct hlc_options *o, const struct row *r,
-                        const char *value)
-{
-    char names[128];
-    if (hl_platform_find(value)) {
-        o->backend = value;
-        return 0;
-    }
-    backend_names(names, sizeof names);
-    return hlc_fail(HLC_NO_DEVICE, "--backend %s: %s; this build has %s",
-                    value, hlc_read_word(value, r->value) < 0
-                    ? "no such backend" : "not built in", names);
-}
-
-static int take_format(struct hlc_options *o, const struct row *r,
-                       const char *value)
-{
-    for (int i = HL_FORMAT_NONE + 1; i < HL_FORMAT_COUNT; i++)
-        if (!strcmp(hl_format_info((enum hl_format)i)->name, value)) {
-            o->light_format = (enum hl_format)i;
-            return 0;
-        }
-    return bad(r, value, "no such format; see 'halflight devices --json -'");
-}
-
-static int take_max_error(struct hlc_options *o, const struct row *r,
-                          const char *value)
-{
-    bool compare = o->command == HLC_COMPARE;
-    struct row range = *r;
-    range.low = compare ? 0 : 1e-3;
-    range.high = compare ? 1e30 : 255;
-    o->has_max_error = true;
-    return take_real(&o->max_error, &range, value);
-}
-
-static int take_min_psnr(struct hlc_options *o, const struct row *r,
-                         const char *value)
-{
-    struct row range = *r;
-    range.low = -1000;
-    range.high = 1000;
-    o->has_min_psnr = true;
-    return take_real(&o->min_psnr, &range, value);
-}
-
-/* A value that is one of the words of the row's own text. */
-static int take_word(struct hlc_options *o, const struct row *r,
-                     const char *value)
-{
-    int i = hlc_read_word(value, r->value);
-    if (i < 0)
-        return hlc_fail(HLC_BAD, "--%s %s: must be one of %s", r->name, value,
-                        r->value);
-    switch (r->kind) {
-    case PROFILE: o->profile = value; return 0;
-    case HALF_PIXEL: o->half_pixel = (enum hl_half_pixel)i; return 0;
-    case PIPELINE:
-        o->reference = i == HL_PIPELINE_COUNT;
-        o->pipeline = o->reference ? HL_PIPELINE_AUTO : (enum hl_pipeline)i;
-        return 0;
-    case GL_CONTEXT: o->gl_context = i ? "egl" : "osmesa"; return 0;
-    case SAMPLES: o->samples = 1u << i; return 0;
-    case LIGHTS_MODE: o->lights_replace = i == 1; return 0;
-    case DSF: o->dsf = (enum hl_dsf)i; return 0;
-    case LIGHT_PATH: o->light_path = (enum hl_light_path)i; return 0;
-    case TILE_DEPTH: o->no_tile_depth = i == 1; return 0;
-    case SCISSOR: o->no_scissor = i == 1; return 0;
-    case IDS_SCHEME: o->ids_scheme = (enum hlc_ids_scheme)i; return 0;
-    default: return bad(r, value, "is not read");
-    }
-}
-
-static int take(struct hlc_options *o, const struct row *r, const char *value)
-{
-    char *at = (char *)o + r->at;
-    switch (r->kind) {
-    case FLAG: *(bool *)(void *)at = true; return 0;
-    case TEXT: memcpy(at, &value, sizeof value); return 0;
-    case COUNT: return take_count(at, r, value);
-    case REAL: return take_real(at, r, value);
-    case SIZE: return take_size(at, r, value);
-    case BACKEND: return take_backend(o, r, value);
-    case CAMERA: return take_camera(o, r, value);
-    case AMBIENT: return take_color(o->ambient, &o->has_ambient, r, value);
-    case BACKGROUND:
-        return take_color(o->background, &o->has_background, r, value);
-    case LIGHT_FORMAT: return take_format(o, r, value);
-    case MIN_PSNR: return take_min_psnr(o, r, value);
-    case MAX_ERROR: return take_max_error(o, r, value);
-    default: return take_word(o, r, value);
-    }
-}
-
 /* ---- the line ----------------------------------------------------------- */
 
-static const struct row *find_row(const char *name, size_t length)
+static const struct hlc_option *find_row(const char *name, size_t length)
 {
     for (int i = 0; i < N_ROWS; i++)
         if (strlen(rows[i].name) == length &&
@@ -347,7 +176,7 @@ static int parse_option(struct hlc_options *o, int *i, char **argv)
 {
     const char *name = argv[*i] + 2, *equals = strchr(name, '=');
     size_t length = equals ? (size_t)(equals - name) : strlen(name);
-    const struct row *r = find_row(name, length);
+    const struct hlc_option *r = find_row(name, length);
     const char *value = equals ? equals + 1 : NULL;
     if (!r)
         return hlc_fail(HLC_BAD, "--%.*s: unknown option", (int)length, name);
@@ -360,7 +189,7 @@ static int parse_option(struct hlc_options *o, int *i, char **argv)
         value = argv[++*i];
     if (r->kind != FLAG && (!value || !*value))
         return hlc_fail(HLC_BAD, "--%s: needs a value: %s", r->name, r->value);
-    return take(o, r, value);
+    return hlc_option_take(o, r, value);
 }
 
 bool hlc_command_find(enum hlc_command *out, const char *name)
@@ -396,6 +225,10 @@ static int check(const struct hlc_options *o)
     if (o->near > 0 && o->far > 0 && o->near >= o->far)
         return hlc_fail(HLC_BAD, "--near %g --far %g: near must be below far",
                         o->near, o->far);
+    if (o->part_width > o->width || o->part_height > o->height)
+        return hlc_fail(HLC_BAD, "--part %ux%u: is larger than --size %ux%u",
+                        (unsigned)o->part_width, (unsigned)o->part_height,
+                        (unsigned)o->width, (unsigned)o->height);
     if (o->supersample && !o->reference)
         return hlc_fail(HLC_BAD, "--supersample %u: is an option of "
                         "--pipeline reference", (unsigned)o->supersample);
@@ -455,7 +288,7 @@ int hlc_options_parse(struct hlc_options *out, int argc, char **argv)
 static void print_options(enum hlc_command command)
 {
     for (int i = 0; i < N_ROWS; i++) {
-        const struct row *r = &rows[i];
+        const struct hlc_option *r = &rows[i];
         if (r->commands & 1u << command)
             printf("  --%s%s%s%s%s\n", r->name, r->value ? " " : "",
                    r->value ? r->value : "", r->help[0] ? "\n        " : "",
@@ -485,6 +318,6 @@ void hlc_options_help(enum hlc_command command)
     printf("\nSCENE is a built-in name ('halflight scene' lists them) or a "
            ".gltf, .glb or .obj\nfile. Options are --name value or "
            "--name=value; 'halflight help COMMAND' lists\nthem. Exit code: "
-           "0 done, 1 a comparison or check failed, 2 bad usage or input, 3 no\nsuch "
-           "backend or device.\n");
+           "0 done, 1 a comparison or check failed, 2 bad usage or input, "
+           "3 no\nsuch backend or device.\n");
 }

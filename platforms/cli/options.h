@@ -20,6 +20,9 @@ enum hlc_ids_scheme {
     HLC_IDS_PAPER            /* random 8-bit ids, as published               */
 };
 
+/* What becomes of alpha masked materials. */
+enum hlc_mask { HLC_MASK_SCENE = 0, HLC_MASK_TEST, HLC_MASK_BLEND };
+
 enum { HLC_SIZE_MAX = 16384, HLC_FRAMES_MAX = 100000, HLC_ARGS = 2 };
 
 struct hlc_options {
@@ -73,6 +76,23 @@ struct hlc_options {
     uint32_t ids_seed;       /* of HLC_IDS_PAPER's random numbers            */
     enum hl_format light_format;     /* NONE = planner's                     */
     enum hl_half_pixel half_pixel;   /* AUTO                                 */
+    uint32_t volume_texels;  /* 0 = planner's                                */
+
+    /* shadows, translucency, channels */
+    bool has_shadows;        /* --shadows was given; not: none, and all of
+                              * the scene's in the reference renderer        */
+    enum hl_shadows shadows;
+    uint32_t shadow_size;    /* texels a side; 0 = planner's                 */
+    bool shadow_lights_all;  /* every light casts shadows                    */
+    enum hl_translucency translucency;
+    enum hl_stipple_mode stipple_mode;
+    enum hl_stipple_filter stipple_filter;
+    enum hlc_mask mask;
+    enum hl_fill fill;
+    enum hl_fetch fetch;
+    bool no_centroid, motion;
+    double jitter[2];        /* pixels                                       */
+    uint32_t part_width, part_height; /* pixels; 0 = all                     */
 
     /* conform */
     const char *mutant;      /* a defect that must be caught; NULL: none     */

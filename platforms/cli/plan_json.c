@@ -120,6 +120,38 @@ static void add_light(cJSON *j, const struct hl_plan *p)
     hlc_json_real(dsf, "k", (double)p->dsf_k, 6);
     hlc_json_real(dsf, "c", (double)p->dsf_c, 6);
     hlc_json_real(dsf, "tau", (double)p->dsf_tau, 6);
+    text(dsf, "fill", p->fill_nearest ? "nearest" : "bilinear");
+    text(dsf, "fetch", p->dsf_bilinear ? "bilinear" : "gather");
+    cJSON_AddBoolToObject(dsf, "centroid", p->centroid);
+}
+
+/* null where the plan has nothing translucent, stippled or shadowed. */
+static void add_features(cJSON *j, const struct hl_plan *p)
+{
+    if (p->translucency == HL_TRANSLUCENCY_AUTO)
+        cJSON_AddNullToObject(j, "translucency");
+    else
+        text(j, "translucency", hlc_translucency_name(p->translucency));
+    if (p->stipple == 0) {
+        cJSON_AddNullToObject(j, "stipple");
+    } else {
+        cJSON *s = cJSON_AddObjectToObject(j, "stipple");
+        hlc_json_uint(s, "side", p->stipple);
+        text(s, "mode", hlc_stipple_name(p->stipple_mode));
+        text(s, "filter", p->stipple_cone ? "cone" : "bilinear");
+    }
+    if (p->shadows == HL_SHADOWS_NONE) {
+        cJSON_AddNullToObject(j, "shadows");
+    } else {
+        cJSON *s = cJSON_AddObjectToObject(j, "shadows");
+        text(s, "kind", hlc_shadows_name(p->shadows));
+        hlc_json_uint(s, "size", p->shadows == HL_SHADOWS_MAPS
+                                 ? p->shadow_size : 0);
+    }
+    cJSON_AddBoolToObject(j, "infinite_far", p->infinite_far);
+    hlc_json_uint(j, "volume_texels", p->volume_texels);
+    cJSON_AddBoolToObject(j, "motion", p->motion);
+    cJSON_AddBoolToObject(j, "brdfs", p->brdfs);
 }
 
 static void add_settings(cJSON *j, const struct hl_plan *p)
@@ -141,6 +173,7 @@ static void add_settings(cJSON *j, const struct hl_plan *p)
     text(j, "depth_read", hlc_depth_read_name(p->depth_read));
     text(j, "half_pixel", hlc_half_pixel_name(p->half_pixel));
     text(j, "decals", hlc_decals_name(p->decals));
+    add_features(j, p);
     hlc_json_uint(j, "edram_tiles", p->edram_tiles);
     hlc_json_real(j, "bytes_per_pixel", (double)p->bytes_per_pixel, 6);
     hlc_json_real(j, "moved_per_pixel", (double)p->moved_per_pixel, 6);

@@ -20,7 +20,7 @@ const char *hlc_role_name(enum hl_role r)
 {
     static const char *const names[HL_ROLE_COUNT] = {
         "none", "normal", "dsf", "exponent", "light_depth", "light", "color",
-        "depth", "resolved", "depth_copy" };
+        "depth", "resolved", "depth_copy", "motion", "shadow_map" };
     return PICK(names, r);
 }
 
@@ -28,14 +28,34 @@ const char *hlc_pass_name(enum hl_pass_role r)
 {
     static const char *const names[HL_PASS_ROLE_COUNT] = {
         "none", "geometry", "light", "material", "forward", "blended",
-        "depth_copy" };
+        "depth_copy", "shadow_map", "shadowed" };
     return PICK(names, r);
 }
 
 const char *hlc_light_path_name(enum hl_light_path p)
 {
-    static const char *const names[] = { "auto", "rects", "tiles", "lists" };
+    static const char *const names[] = { "auto", "rects", "tiles", "lists",
+                                         "volumes" };
     return PICK(names, p);
+}
+
+const char *hlc_translucency_name(enum hl_translucency t)
+{
+    static const char *const names[] = { "auto", "forward", "2x2", "4x4" };
+    return PICK(names, t);
+}
+
+const char *hlc_stipple_name(enum hl_stipple_mode m)
+{
+    static const char *const names[] = { "best", "user", "depth",
+                                         "depth-free" };
+    return PICK(names, m);
+}
+
+const char *hlc_shadows_name(enum hl_shadows s)
+{
+    static const char *const names[] = { "none", "volumes", "maps" };
+    return PICK(names, s);
 }
 
 const char *hlc_dsf_name(uint32_t dsf)
@@ -75,7 +95,8 @@ const char *hlc_compare_name(enum hl_compare c)
 const char *hlc_repeat_name(enum hl_repeat r)
 {
     static const char *const names[] = { "once", "per_tile", "per_lights",
-                                         "per_object_lights" };
+                                         "per_object_lights",
+                                         "per_shadow_light" };
     return PICK(names, r);
 }
 
@@ -83,7 +104,7 @@ const char *hlc_error_unit(enum hl_role r)
 {
     static const char *const units[HL_ROLE_COUNT] = {
         "", "degrees", "metres", "relative", "", "relative", "relative", "",
-        "", "" };
+        "", "", "", "" };
     return PICK(units, r);
 }
 
@@ -213,6 +234,33 @@ static void print_pass(FILE *out, const struct hl_plan_pass *p)
     fprintf(out, "\n");
 }
 
+/* Of features: a line only where the plan has it. */
+static void print_features(FILE *out, const struct hl_plan *p)
+{
+    if (p->translucency != HL_TRANSLUCENCY_AUTO)
+        fprintf(out, "  translucent surfaces %s",
+                hlc_translucency_name(p->translucency));
+    if (p->stipple)
+        fprintf(out, ", patterns %s, %s filter",
+                hlc_stipple_name(p->stipple_mode),
+                p->stipple_cone ? "cone" : "bilinear");
+    if (p->translucency != HL_TRANSLUCENCY_AUTO)
+        fprintf(out, "\n");
+    if (p->shadows != HL_SHADOWS_NONE)
+        fprintf(out, "  shadows by %s", hlc_shadows_name(p->shadows));
+    if (p->shadows == HL_SHADOWS_MAPS)
+        fprintf(out, " of %u texels", (unsigned)p->shadow_size);
+    if (p->shadows != HL_SHADOWS_NONE)
+        fprintf(out, "\n");
+    if (p->volume_texels)
+        fprintf(out, "  light volumes from %u texels on\n",
+                (unsigned)p->volume_texels);
+    if (p->infinite_far || p->motion || p->brdfs)
+        fprintf(out, " %s%s%s\n", p->infinite_far ? " no far plane" : "",
+                p->motion ? " motion vectors" : "",
+                p->brdfs ? " BRDF channel" : "");
+}
+
 /* Of a profile, and what it has in common with none. */
 static void print_rules(FILE *out, const struct hl_plan *p)
 {
@@ -249,9 +297,11 @@ static void print_settings(FILE *out, const struct hl_plan *p)
             hlc_light_path_name(p->light_path), (unsigned)p->batch,
             (unsigned)p->tile, p->tile_depth ? " with depth" : "",
             (double)p->light_scale);
-    fprintf(out, "  dsf %s, k %.3g, c %.3g, tau %.3g\n",
+    fprintf(out, "  dsf %s, k %.3g, c %.3g, tau %.3g%s%s%s\n",
             hlc_dsf_name(p->dsf), (double)p->dsf_k, (double)p->dsf_c,
-            (double)p->dsf_tau);
+            (double)p->dsf_tau, p->fill_nearest ? ", fill nearest" : "",
+            p->dsf_bilinear ? ", filtered fetch" : "",
+            p->centroid ? ", centroid" : "");
 }
 
 static void print_reasons(FILE *out, const struct hl_plan *p)
@@ -280,6 +330,7 @@ void hl_plan_text(FILE *out, const struct hl_plan *plan)
     for (uint32_t i = 0; i < plan->n_passes; i++)
         print_pass(out, &plan->pass[i]);
     print_settings(out, plan);
+    print_features(out, plan);
     print_rules(out, plan);
     print_reasons(out, plan);
 }

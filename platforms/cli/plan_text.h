@@ -24,6 +24,9 @@ const char *hlc_two16_name(uint32_t two16);            /* HL_TWO16_*         */
 const char *hlc_depth_read_name(uint32_t depth_read);  /* HL_DEPTH_READ_*    */
 const char *hlc_half_pixel_name(enum hl_half_pixel);
 const char *hlc_decals_name(enum hl_decals);
+const char *hlc_translucency_name(enum hl_translucency);
+const char *hlc_stipple_name(enum hl_stipple_mode);
+const char *hlc_shadows_name(enum hl_shadows);         /* "maps"             */
 const char *hlc_number_name(uint32_t number);          /* enum hl_number     */
 const char *hlc_endian_name(uint32_t endian);          /* enum hl_endian     */
 bool hlc_is_native(const struct hl_plan *);

@@ -19,6 +19,7 @@ struct hlc_inside {
                                   * pass: evaluations                        */
     uint32_t lights_width, lights_height;
     uint8_t *rejects;            /* a pixel: HL_INSPECT_REJECTS              */
+    uint8_t *stipple;            /* an L-buffer texel: HL_INSPECT_STIPPLE    */
 };
 
 struct hlc_render {
@@ -40,6 +41,7 @@ struct hlc_render {
     struct hl_caps caps;
     struct hlc_world world;
     struct hl_frame frame;
+    struct hl_camera before;     /* with --motion: far / 100 to the left     */
     struct hl_needs needs;
     struct hl_plan plan;
     struct hl_renderer *renderer;

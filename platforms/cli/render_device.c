@@ -60,6 +60,11 @@ static int open_all(struct hlc_render *r)
         return code;
     r->near = (double)r->frame.camera.near;
     r->far = (double)r->frame.camera.far;
+    if (r->o->motion) {
+        r->before = r->frame.camera;
+        r->before.view[12] += r->before.far * 0.01f;
+        r->frame.before = &r->before;
+    }
     return make_renderer(r);
 }
 
@@ -185,6 +190,26 @@ static int draw_all(struct hlc_render *r)
 
 /* ---- reading back ------------------------------------------------------ */
 
+static uint32_t part_width(const struct hlc_render *r)
+{
+    return r->o->part_width ? r->o->part_width : r->plan.width;
+}
+
+static uint32_t part_height(const struct hlc_render *r)
+{
+    return r->o->part_height ? r->o->part_height : r->plan.height;
+}
+
+/* A picture of the frame's size down to the part that was drawn, in place:
+ * rows only move forward. */
+static void crop(const struct hlc_render *r, void *data, size_t texel)
+{
+    uint32_t w = part_width(r), h = part_height(r);
+    for (size_t y = 1; data && y < h; y++)
+        memmove((char *)data + y * w * texel,
+                (char *)data + y * r->plan.width * texel, w * texel);
+}
+
 static int read_picture(struct hlc_render *r)
 {
     struct hlc_texels t;
@@ -192,14 +217,12 @@ static int read_picture(struct hlc_render *r)
                                        hl_renderer_output(r->renderer));
     if (e != HL_OK)
         return refused(r, "picture", e);
-    size_t n = (size_t)t.width * t.height;
-    r->picture.rgb = malloc(n * 3 * sizeof(float));
-    r->picture.width = t.width;
-    r->picture.height = t.height;
-    r->picture.linear = true;
-    for (size_t i = 0; i < n && r->picture.rgb; i++) {
+    uint32_t w = part_width(r), h = part_height(r);
+    r->picture = (struct hlh_picture){
+        w, h, malloc((size_t)w * h * 3 * sizeof(float)), true };
+    for (size_t i = 0; i < (size_t)w * h && r->picture.rgb; i++) {
         float texel[4];
-        hlc_texel(texel, &t, i);
+        hlc_texel(texel, &t, i / w * t.width + i % w);
         memcpy(r->picture.rgb + 3 * i, texel, 3 * sizeof(float));
     }
     hlc_texels_free(&t);
@@ -229,7 +252,7 @@ static enum hl_result inspect(struct hlc_render *r, enum hl_inspect what,
 /* From items to the scene's objects. */
 static void name_objects(struct hlc_render *r)
 {
-    size_t n = (size_t)r->o->width * r->o->height;
+    size_t n = (size_t)part_width(r) * part_height(r);
     for (size_t i = 0; i < n; i++) {
         uint32_t id = r->inside.ids[i], item = id >> 16;
         if (item > 0 && item <= r->world.n_items)
@@ -255,6 +278,7 @@ static int look_inside(struct hlc_render *r)
     enum hl_result e = HL_OK;
     if (r->o->ids || r->o->dump)
         e = inspect(r, HL_INSPECT_IDS, &in->ids, sizeof *in->ids);
+    crop(r, in->ids, sizeof *in->ids);
     if (e == HL_OK && in->ids)
         name_objects(r);
     if (e == HL_OK && hlc_render_inspects(r->o)) {
@@ -264,6 +288,9 @@ static int look_inside(struct hlc_render *r)
     }
     if (e == HL_OK && hlc_render_inspects(r->o) && filters(&r->plan))
         e = inspect(r, HL_INSPECT_REJECTS, &in->rejects, 1);
+    crop(r, in->rejects, 1);
+    if (e == HL_OK && r->o->dump && r->plan.stipple)
+        e = inspect(r, HL_INSPECT_STIPPLE, &in->stipple, 1);
     size_t n = in->lights ? (size_t)in->lights_width * in->lights_height : 0;
     for (size_t i = 0; i < n; i++)
         r->light_evaluations += (uint64_t)in->lights[i];

@@ -72,6 +72,21 @@ static double shaded_pixels(const struct hlc_render *r)
     return (double)r->o->width * r->o->height;
 }
 
+static void put_feature_counts(cJSON *c, const struct hl_frame_stats *s)
+{
+    const struct { const char *key; uint32_t n; } row[] = {
+        { "stippled", s->stippled }, { "unstippled", s->unstippled },
+        { "stipple_conflicts", s->stipple_conflicts },
+        { "stipple_changes", s->stipple_changes }, { "decals", s->decals },
+        { "light_volumes", s->light_volumes },
+        { "shadow_lights", s->shadow_lights },
+        { "shadow_casters", s->shadow_casters },
+        { "shadow_triangles", s->shadow_triangles },
+    };
+    for (size_t i = 0; i < sizeof row / sizeof row[0]; i++)
+        hlc_json_uint(c, row[i].key, row[i].n);
+}
+
 static void put_counts(cJSON *tree, const struct hlc_render *r)
 {
     cJSON *c = object(tree, "counts");
@@ -88,6 +103,8 @@ static void put_counts(cJSON *tree, const struct hlc_render *r)
         hlc_json_uint(c, "lights_culled", r->stats.lights_culled);
         hlc_json_uint(c, "light_refs", r->stats.light_refs);
     }
+    if (!r->o->reference)
+        put_feature_counts(c, &r->stats);
     hlc_json_uint(c, "light_evaluations", r->light_evaluations);
     hlc_json_real(c, "lights_per_pixel_mean",
                   (double)r->light_evaluations / shaded_pixels(r), 9);

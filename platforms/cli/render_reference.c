@@ -37,6 +37,7 @@ static void options_of(struct hlr_options *out, const struct hlc_render *r,
         .width = o->width, .height = o->height, .samples = o->samples,
         .grid = o->supersample, .normal_maps = !o->no_normal_maps,
         .no_specular = o->no_specular, .near = o->near, .far = o->far,
+        .shadows = !o->has_shadows || o->shadows != HL_SHADOWS_NONE,
         .progress = isatty(STDERR_FILENO) ? show : NULL, .user = p
     };
 }

@@ -7,7 +7,8 @@ int hlc_world_open(struct hlc_world *out, const struct hlc_machine *machine,
                    const struct hlh_scene *scene, const struct hlc_options *o)
 {
     struct hlc_world_options w = { o->no_normal_maps, o->no_specular,
-                                   o->ids_scheme, o->ids_seed };
+                                   o->ids_scheme, o->ids_seed,
+                                   o->shadows == HL_SHADOWS_VOLUMES };
     struct hlh_error error;
     const char *more = machine->complaint;
     if (hlc_world_create(out, machine->device, scene, &w, &error))
@@ -50,5 +51,9 @@ int hlc_plan_open(struct hl_frame *frame, struct hl_needs *needs,
     if (code == HLC_DONE)
         hlc_view(&frame->camera, scene, o->near, o->far,
                  plan->reversed_depth);
+    for (int k = 0; k < 2; k++)
+        frame->camera.jitter[k] = (float)o->jitter[k];
+    frame->width = o->part_width;
+    frame->height = o->part_height;
     return code;
 }

@@ -24,6 +24,19 @@ static void override(struct hlh_scene *s, const struct hlc_options *o)
         set3(s->background, o->background);
 }
 
+static void set_masks(struct hlh_scene *s, enum hlc_mask mask)
+{
+    for (uint32_t i = 0; mask && i < s->n_materials; i++)
+        s->materials[i].fence = mask == HLC_MASK_BLEND &&
+                                s->materials[i].alpha == HLH_ALPHA_MASK;
+}
+
+static void set_shadows(struct hlh_scene *s, bool all)
+{
+    for (uint32_t i = 0; all && i < s->n_lights; i++)
+        s->lights[i].shadow = true;
+}
+
 bool hlc_scene_open(struct hlh_scene *out, const struct hlc_options *o,
                     struct hlh_error *error)
 {
@@ -35,5 +48,7 @@ bool hlc_scene_open(struct hlh_scene *out, const struct hlc_options *o,
         return false;
     }
     override(out, o);
+    set_masks(out, o->mask);
+    set_shadows(out, o->shadow_lights_all);
     return true;
 }

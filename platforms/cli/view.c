@@ -128,6 +128,34 @@ static uint32_t fits32(uint64_t n)
     return n < UINT32_MAX ? (uint32_t)n : UINT32_MAX;
 }
 
+static void needs_of_features(struct hl_needs *out,
+                              const struct hlc_options *o)
+{
+    out->shadows = o->shadows;
+    out->shadow_size = o->shadow_size;
+    out->volume_texels = o->volume_texels;
+    out->translucency = o->translucency;
+    out->stipple_mode = o->stipple_mode;
+    out->stipple_filter = o->stipple_filter;
+    out->fill = o->fill;
+    out->fetch = o->fetch;
+    out->motion = o->motion;
+    out->no_centroid = o->no_centroid;
+}
+
+static void count_features(struct hl_needs *out,
+                           const struct hlc_world *world)
+{
+    out->n_shadow_lights = 0;
+    for (uint32_t i = 0; i < world->n_lights; i++) {
+        out->n_shadow_lights += world->lights[i].shadow;
+        out->shadow_points |= world->lights[i].shadow &&
+                              world->lights[i].kind == HL_POINT;
+    }
+    for (uint32_t i = 0; i < world->scene->n_materials; i++)
+        out->brdfs |= world->materials[i].brdf != HL_BRDF_BLINN_PHONG;
+}
+
 void hlc_needs(struct hl_needs *out, const struct hlc_world *world,
                const struct hl_frame *frame, const struct hlc_options *o)
 {
@@ -150,7 +178,9 @@ void hlc_needs(struct hl_needs *out, const struct hlc_world *world,
     out->dsf_tau = (float)o->dsf_tau;
     out->light_format = o->light_format;
     out->half_pixel = o->half_pixel;
+    needs_of_features(out, o);
     hl_needs_measure(out, frame, world->surfaces,
                      (float)o->width / (float)o->height);
     out->n_regions = fits32(world->ids.regions);
+    count_features(out, world);
 }

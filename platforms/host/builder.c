@@ -91,6 +91,36 @@ uint32_t hlh_build_material(struct hlh_builder *b, const char *name,
     return s->n_materials - 1;
 }
 
+struct hlh_material *hlh_build_last_material(struct hlh_builder *b)
+{
+    struct hlh_scene *s = b->scene;
+    return b->failed || !s->n_materials ? &b->no_material
+                                        : &s->materials[s->n_materials - 1];
+}
+
+int32_t hlh_build_image(struct hlh_builder *b, const char *name,
+                        uint32_t side,
+                        void (*texel)(uint8_t *, uint32_t, uint32_t))
+{
+    struct hlh_scene *s = b->scene;
+    struct hlh_image *i = hlh_push(&s->images, &s->n_images, sizeof *i);
+    if (!i) {
+        b->failed = true;
+        return -1;
+    }
+    i->name = hlh_strdup(name);
+    i->rgba = hlh_alloc((size_t)side * side, 4);
+    if (!i->name || !i->rgba) {
+        b->failed = true;
+        return -1;
+    }
+    i->width = i->height = side;
+    for (uint32_t y = 0; y < side; y++)
+        for (uint32_t x = 0; x < side; x++)
+            texel(&i->rgba[((size_t)y * side + x) * 4], x, y);
+    return (int32_t)s->n_images - 1;
+}
+
 uint32_t hlh_build_mesh(struct hlh_builder *b, const char *name,
                         uint32_t material)
 {
@@ -158,6 +188,43 @@ void hlh_build_light(struct hlh_builder *b, struct hlh_v3 at, double radius,
     l->radius = (float)radius;
     store(l->position, at);
     store(l->color, color);
+}
+
+static void aim(struct hlh_light *l, struct hlh_v3 d)
+{
+    double n = sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
+    store(l->direction, hlh_v3(d.x / n, d.y / n, d.z / n));
+}
+
+void hlh_build_spot(struct hlh_builder *b, struct hlh_v3 at,
+                    struct hlh_v3 target, double radius, double inner,
+                    double outer, struct hlh_v3 color)
+{
+    hlh_build_light(b, at, radius, color);
+    if (b->failed)
+        return;
+    struct hlh_light *l = &b->scene->lights[b->scene->n_lights - 1];
+    l->kind = HLH_LIGHT_SPOT;
+    l->inner_angle = (float)inner;
+    l->outer_angle = (float)outer;
+    aim(l, hlh_mad(target, at, -1));
+}
+
+void hlh_build_directional(struct hlh_builder *b, struct hlh_v3 direction,
+                           struct hlh_v3 color)
+{
+    hlh_build_light(b, hlh_v3(0, 0, 0), 0, color);
+    if (b->failed)
+        return;
+    struct hlh_light *l = &b->scene->lights[b->scene->n_lights - 1];
+    l->kind = HLH_LIGHT_DIRECTIONAL;
+    aim(l, direction);
+}
+
+void hlh_build_shadow(struct hlh_builder *b)
+{
+    if (!b->failed && b->scene->n_lights)
+        b->scene->lights[b->scene->n_lights - 1].shadow = true;
 }
 
 void hlh_build_random_light(struct hlh_builder *b, struct hlh_v3 at,

@@ -11,6 +11,7 @@ struct hlh_builder {
     struct hlh_scene *scene;
     uint64_t random;
     bool failed;
+    struct hlh_material no_material;  /* what is changed when memory is out  */
     struct hlh_vertex *vertices;      /* of the mesh in hand                 */
     uint32_t n_vertices;
     uint32_t *indices;
@@ -36,6 +37,13 @@ struct hlh_v3 hlh_hue(double hue, double saturation, double v);
 uint32_t hlh_build_material(struct hlh_builder *b, const char *name,
                             struct hlh_v3 color, double roughness,
                             double metallic);
+/* A square image of `side` texels, each filled by texel(rgba, x, y); -1 on
+ * failure. */
+int32_t hlh_build_image(struct hlh_builder *b, const char *name,
+                        uint32_t side,
+                        void (*texel)(uint8_t *, uint32_t, uint32_t));
+/* The material just built, to be changed; a scratch one on failure. */
+struct hlh_material *hlh_build_last_material(struct hlh_builder *b);
 /* Close the mesh in hand; its index. */
 uint32_t hlh_build_mesh(struct hlh_builder *b, const char *name,
                         uint32_t material);
@@ -45,6 +53,14 @@ void hlh_build_object(struct hlh_builder *b, uint32_t mesh, struct hlh_v3 at,
 void hlh_build_object_at_origin(struct hlh_builder *b, uint32_t mesh);
 void hlh_build_light(struct hlh_builder *b, struct hlh_v3 at, double radius,
                      struct hlh_v3 color);
+/* The same as a spot that looks to `target`; half angles in radians. */
+void hlh_build_spot(struct hlh_builder *b, struct hlh_v3 at,
+                    struct hlh_v3 target, double radius, double inner,
+                    double outer, struct hlh_v3 color);
+void hlh_build_directional(struct hlh_builder *b, struct hlh_v3 direction,
+                           struct hlh_v3 color);
+/* The light just built casts shadows. */
+void hlh_build_shadow(struct hlh_builder *b);
 /* Somewhere in the box center +- spread, any hue; the others from ranges. */
 struct hlh_light_range {
     struct hlh_v3 spread;
@@ -91,10 +107,21 @@ static inline struct hlh_v3 hlh_mad(struct hlh_v3 a, struct hlh_v3 b, double s)
 }
 
 /* One generator a scene, one file a family. */
+void hlh_build_fig1(struct hlh_builder *b);
 void hlh_build_fig7(struct hlh_builder *b);
 void hlh_build_fig8(struct hlh_builder *b);
 void hlh_build_fig9(struct hlh_builder *b);
 void hlh_build_lidr(struct hlh_builder *b);
 void hlh_build_thin(struct hlh_builder *b);
 void hlh_build_many(struct hlh_builder *b);
+void hlh_build_blades(struct hlh_builder *b);
+/* Of blades, only layer k reflects: 0 the opaque, 1 the lowest pane. */
+void hlh_build_blades_0(struct hlh_builder *b);
+void hlh_build_blades_1(struct hlh_builder *b);
+void hlh_build_blades_2(struct hlh_builder *b);
+void hlh_build_blades_3(struct hlh_builder *b);
+void hlh_build_glass(struct hlh_builder *b);
+void hlh_build_shadows(struct hlh_builder *b);
+void hlh_build_fence(struct hlh_builder *b);
+void hlh_build_decals(struct hlh_builder *b);
 #endif

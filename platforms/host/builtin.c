@@ -11,6 +11,8 @@ static const struct {
     uint32_t seed;
     void (*build)(struct hlh_builder *);
 } builtins[] = {
+    {"fig1", "213 lights over the walkways of fig9 (figure 1)", 1,
+     hlh_build_fig1},
     {"fig7", "287 objects and 287 lights, no textures (Kircher and Lawrance "
      "2009, figure 7)", 7, hlh_build_fig7},
     {"fig8", "101 objects and 81 lights, the paper's worst case for forward "
@@ -23,6 +25,24 @@ static const struct {
      hlh_build_thin},
     {"many", "a wall of 1,000 touching bricks under 50 lights", 6,
      hlh_build_many},
+    {"blades", "rotor blades that cast a shadow on three translucent panes "
+     "and the floor (figure 6)", 10, hlh_build_blades},
+    {"blades-0", "blades where only what is opaque reflects light", 10,
+     hlh_build_blades_0},
+    {"blades-1", "blades where only the lowest pane reflects light", 10,
+     hlh_build_blades_1},
+    {"blades-2", "blades where only the middle pane reflects light", 10,
+     hlh_build_blades_2},
+    {"blades-3", "blades where only the highest pane reflects light", 10,
+     hlh_build_blades_3},
+    {"fence", "chain-link fences before drums and crates, 40 lights "
+     "(figure 10)", 11, hlh_build_fence},
+    {"decals", "a floor and a wall with dents and tiles that change their "
+     "normals, 30 lights", 12, hlh_build_decals},
+    {"shadows", "a spot, a directional and a point light that cast shadows "
+     "over simple bodies", 13, hlh_build_shadows},
+    {"glass", "60 translucent bodies, many of them in a row, one light that "
+     "casts shadows", 14, hlh_build_glass},
 };
 enum { N_BUILTINS = sizeof builtins / sizeof *builtins };
 

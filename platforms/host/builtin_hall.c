@@ -2,10 +2,7 @@
 /* After the demo room of Trebilco 2007: a closed hall of brick with columns
  * and vases, 255 lights (index 0 is the null light), about 40,000 triangles.
  * The two textures are made here: integers only. */
-#include <stdlib.h>
-#include <string.h>
 #include "platforms/host/builder.h"
-#include "platforms/host/util.h"
 
 enum { TEXELS = 256 };
 
@@ -61,28 +58,6 @@ static void plank_color(uint8_t *out, uint32_t x, uint32_t y)
     out[3] = 255;
 }
 
-static int32_t image(struct hlh_builder *b, const char *name,
-                     void (*texel)(uint8_t *, uint32_t, uint32_t))
-{
-    struct hlh_scene *s = b->scene;
-    struct hlh_image *i = hlh_push(&s->images, &s->n_images, sizeof *i);
-    if (!i) {
-        b->failed = true;
-        return -1;
-    }
-    i->name = hlh_strdup(name);
-    i->rgba = hlh_alloc((size_t)TEXELS * TEXELS, 4);
-    if (!i->name || !i->rgba) {
-        b->failed = true;
-        return -1;
-    }
-    i->width = i->height = TEXELS;
-    for (uint32_t y = 0; y < TEXELS; y++)
-        for (uint32_t x = 0; x < TEXELS; x++)
-            texel(&i->rgba[(y * TEXELS + x) * 4], x, y);
-    return (int32_t)s->n_images - 1;
-}
-
 static void room(struct hlh_builder *b)
 {
     const double x = 15, y = 9, z = 23;
@@ -90,9 +65,10 @@ static void room(struct hlh_builder *b)
     uint32_t planks = hlh_build_material(b, "planks", hlh_v3(1, 1, 1), 0.4, 0);
     uint32_t plaster = hlh_build_material(b, "plaster", hlh_v3(0.7, 0.68, 0.6),
                                           0.8, 0);
-    int32_t color = image(b, "brick", brick_color);
-    int32_t normal = image(b, "brick normal", brick_normal);
-    int32_t wood = image(b, "planks", plank_color);
+    int32_t color = hlh_build_image(b, "brick", TEXELS, brick_color);
+    int32_t normal = hlh_build_image(b, "brick normal", TEXELS,
+                                     brick_normal);
+    int32_t wood = hlh_build_image(b, "planks", TEXELS, plank_color);
     if (b->failed)
         return;
     b->scene->materials[brick].base_texture.image = color;

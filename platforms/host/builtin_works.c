@@ -244,7 +244,7 @@ static void lamps(struct hlh_builder *b)
         lamp(b, hlh_v3(-18 + 4 * i, 2.5, 9.6), still, 3.2);
 }
 
-void hlh_build_fig9(struct hlh_builder *b)
+static void build_works(struct hlh_builder *b)
 {
     struct works w;
     paints(b, &w);
@@ -260,5 +260,23 @@ void hlh_build_fig9(struct hlh_builder *b)
     make_goods(b, &w);
     lay_out(b, &w);
     lamps(b);
+}
+
+/* 122 and 91 more, along the pipes and between the crates: 213. */
+void hlh_build_fig1(struct hlh_builder *b)
+{
+    build_works(b);
+    for (int i = 0; i < 40; i++)
+        lamp(b, hlh_v3(-19 + i, i & 1 ? 5.7 : 2.9, i & 1 ? -10.6 : -0.6),
+             hlh_v3(0, 0, 0), 2.4);
+    for (int i = 0; i < 51; i++)
+        lamp(b, hlh_v3(-17 + 2.1 * (i % 17), 0.9, 0.5 + 2 * (i / 17)),
+             hlh_v3(0.8, 0.5, 0.8), 3);
+    hlh_build_camera(b, hlh_v3(-17.5, 4.9, 3.6), hlh_v3(2, 2.2, -3.2), 58);
+}
+
+void hlh_build_fig9(struct hlh_builder *b)
+{
+    build_works(b);
     hlh_build_camera(b, hlh_v3(-15.5, 6.2, 9.6), hlh_v3(1.5, 2.6, -4), 50);
 }

@@ -109,6 +109,9 @@ bool gltf_array(struct gltf *g, const cJSON *object, const char *where,
 /* object.extensions[name], NULL where absent. */
 bool gltf_extension(struct gltf *g, const cJSON *object, const char *where,
                     const char *name, const cJSON **out);
+/* object.extras.halflight[key]; NULL where anything on the way is absent or
+ * no object: extras are anybody's, and never fail a load. */
+const cJSON *gltf_extra(const cJSON *object, const char *key);
 /* The name of a list as the file spells it: "bufferViews". */
 const char *gltf_list_name(enum gltf_list list);
 bool gltf_memory(struct gltf *g);     /* fails with "out of memory"          */

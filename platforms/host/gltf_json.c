@@ -167,6 +167,15 @@ bool gltf_extension(struct gltf *g, const cJSON *object, const char *where,
     return !extensions || gltf_object(g, extensions, where, name, out);
 }
 
+/* cJSON finds no member in NULL or in what is no object. */
+const cJSON *gltf_extra(const cJSON *object, const char *key)
+{
+    const cJSON *extras = get(object, "extras");
+    const cJSON *ours = cJSON_IsObject(extras) ? get(extras, "halflight")
+                                               : NULL;
+    return cJSON_IsObject(ours) ? get(ours, key) : NULL;
+}
+
 char *gltf_name(const cJSON *object, const char *kind, uint32_t i)
 {
     const cJSON *name = get(object, "name");

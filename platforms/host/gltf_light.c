@@ -16,7 +16,7 @@
 struct light {
     enum hlh_light_kind kind;
     double color[3], intensity, range, inner, outer;
-    bool has_range;
+    bool has_range, shadow, smooth;
 };
 
 static bool read_spot(struct gltf *g, const cJSON *item, const char *where,
@@ -85,6 +85,10 @@ static bool read_light(struct gltf *g, uint32_t i, struct light *l)
                             where);
     if (l->range > RADIUS_LIMIT)
         return hlh_fail(g->error, g->file, "%s.range: is beyond 1e18", where);
+    const cJSON *falloff = gltf_extra(item, "falloff");
+    l->shadow = cJSON_IsTrue(gltf_extra(item, "shadow"));
+    l->smooth = cJSON_IsString(falloff) && falloff->valuestring &&
+                strcmp(falloff->valuestring, "smooth") == 0;
     return l->kind != HLH_LIGHT_SPOT || read_spot(g, item, where, l);
 }
 
@@ -140,7 +144,8 @@ bool gltf_add_light(struct gltf *g, uint32_t i, const double world[16],
     if (!out)
         return gltf_memory(g);
     out->kind = l.kind;
-    out->falloff = HLH_FALLOFF_INVERSE_SQUARE;
+    out->falloff = l.smooth ? HLH_FALLOFF_SMOOTH : HLH_FALLOFF_INVERSE_SQUARE;
+    out->shadow = l.shadow;
     out->direction[1] = -1;
     for (int k = 0; k < 3; k++) {
         double c = l.color[k] * l.intensity;

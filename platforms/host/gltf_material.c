@@ -207,6 +207,16 @@ static bool load_pbr(struct gltf *g, const cJSON *item, const char *material,
                         &m->metal_rough_texture, uv, have_uv, &info);
 }
 
+static void load_extras(const cJSON *item, struct hlh_material *m)
+{
+    const cJSON *brdf = gltf_extra(item, "brdf");
+    m->fence = m->alpha == HLH_ALPHA_MASK &&
+               cJSON_IsTrue(gltf_extra(item, "fence"));
+    m->decal = cJSON_IsTrue(gltf_extra(item, "decal"));
+    if (cJSON_IsNumber(brdf) && brdf->valuedouble == HLH_BRDF_SKIN)
+        m->brdf = HLH_BRDF_SKIN;
+}
+
 static bool load_material(struct gltf *g, uint32_t i, struct hlh_material *m)
 {
     const cJSON *item = g->list[GLTF_MATERIALS].item[i], *info, *normal;
@@ -230,6 +240,7 @@ static bool load_material(struct gltf *g, uint32_t i, struct hlh_material *m)
         return hlh_fail(g->error, g->file, "%s.normalTexture.scale: is %g",
                         where, scale);
     m->normal_scale = (float)scale;
+    load_extras(item, m);
     return true;
 }
 

@@ -128,7 +128,7 @@ static bool check_cycles(struct gltf *g, const struct node *nodes, uint32_t n)
 }
 
 static bool add_objects(struct gltf *g, uint32_t mesh, const double world[16],
-                        const char *where)
+                        bool no_shadow, const char *where)
 {
     struct hlh_scene *s = g->scene;
     const struct gltf_mesh_range *range = &g->range[mesh];
@@ -141,6 +141,7 @@ static bool add_objects(struct gltf *g, uint32_t mesh, const double world[16],
         if (!o)
             return gltf_memory(g);
         o->mesh = range->first + i;
+        o->no_shadow = no_shadow;
         for (int k = 0; k < 16; k++)
             o->world[k] = (float)world[k];
     }
@@ -160,11 +161,14 @@ static bool finite_world(struct gltf *g, const double world[16],
 static bool visit_node(struct gltf *g, const struct node *n,
                        const struct visit *v)
 {
+    const cJSON *item = g->list[GLTF_NODES].item[v->node];
+    bool no_shadow = cJSON_IsTrue(gltf_extra(item, "no_shadow"));
     char where[48];
     snprintf(where, sizeof where, "nodes[%u]", (unsigned)v->node);
     if (!finite_world(g, v->world, where))
         return false;
-    if (n->mesh != HLH_NONE && !add_objects(g, n->mesh, v->world, where))
+    if (n->mesh != HLH_NONE &&
+        !add_objects(g, n->mesh, v->world, no_shadow, where))
         return false;
     if (n->light != HLH_NONE && !gltf_add_light(g, n->light, v->world, where))
         return false;

@@ -3,6 +3,7 @@
  * object, light and camera: reading back keeps every order. */
 #include "platforms/host/gltf_write.h"
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include "platforms/host/image_png.h"
@@ -169,6 +170,35 @@ static void write_texture(struct hlh_buffer *j, const struct hlh_texture *t,
                          (unsigned)(*next)++);
 }
 
+/* Members that begin with a comma each, in an extras of ours; or nothing. */
+static void write_extras(struct hlh_buffer *j, const char *members)
+{
+    if (members[0])
+        hlh_buffer_print(j, ",\"extras\":{\"halflight\":{%s}}", members + 1);
+}
+
+static void write_material_extras(struct hlh_buffer *j,
+                                  const struct hlh_material *m)
+{
+    char members[64];
+    snprintf(members, sizeof members, "%s%s%s",
+             m->fence ? ",\"fence\":true" : "",
+             m->decal ? ",\"decal\":true" : "",
+             m->brdf == HLH_BRDF_SKIN ? ",\"brdf\":1" : "");
+    write_extras(j, members);
+}
+
+static void write_light_extras(struct hlh_buffer *j,
+                               const struct hlh_light *l)
+{
+    char members[64];
+    snprintf(members, sizeof members, "%s%s",
+             l->shadow ? ",\"shadow\":true" : "",
+             l->falloff == HLH_FALLOFF_SMOOTH ? ",\"falloff\":\"smooth\""
+                                              : "");
+    write_extras(j, members);
+}
+
 static void write_material(struct hlh_buffer *j, const struct hlh_material *m,
                            uint32_t *next)
 {
@@ -192,8 +222,10 @@ static void write_material(struct hlh_buffer *j, const struct hlh_material *m,
     hlh_buffer_print(j, ",\"alphaMode\":\"%s\"", mode[m->alpha]);
     if (m->alpha == HLH_ALPHA_MASK)
         hlh_buffer_print(j, ",\"alphaCutoff\":%.9g", m->alpha_cutoff);
-    hlh_buffer_print(j, ",\"doubleSided\":%s}",
+    hlh_buffer_print(j, ",\"doubleSided\":%s",
                      m->double_sided ? "true" : "false");
+    write_material_extras(j, m);
+    hlh_buffer_print(j, "}");
 }
 
 /* Sampler 3 u + v wraps u and v by enum hlh_wrap. */
@@ -327,6 +359,7 @@ static void write_light(struct hlh_buffer *j, const struct hlh_light *l)
         hlh_buffer_print(j, ",\"spot\":{\"innerConeAngle\":%.9g,"
                          "\"outerConeAngle\":%.9g}", l->inner_angle,
                          l->outer_angle);
+    write_light_extras(j, l);
     hlh_buffer_print(j, "}");
 }
 
@@ -356,6 +389,7 @@ static void write_nodes(struct writer *w, uint32_t n_lights)
         comma(j, n++);
         hlh_buffer_print(j, "{\"mesh\":%u,", (unsigned)s->objects[i].mesh);
         print_floats(j, "matrix", s->objects[i].world, 16);
+        write_extras(j, s->objects[i].no_shadow ? ",\"no_shadow\":true" : "");
         hlh_buffer_print(j, "}");
     }
     for (uint32_t i = 0; n_lights && i < s->n_lights; i++) {
@@ -426,14 +460,8 @@ static bool encode(struct writer *w, struct hlh_buffer *out, const char *file,
     const struct hlh_scene *s = w->scene;
     uint32_t n_lights = 0;
     uint64_t size;
-    for (uint32_t i = 0; i < s->n_lights; i++) {
-        const struct hlh_light *l = &s->lights[i];
-        if (l->kind == HLH_LIGHT_SPOT && l->falloff == HLH_FALLOFF_SMOOTH)
-            return hlh_fail(error, file, "lights[%u]: a spot light of smooth "
-                            "falloff has no place in glTF or CSV",
-                            (unsigned)i);
-        n_lights += !hlh_light_in_csv(l);
-    }
+    for (uint32_t i = 0; i < s->n_lights; i++)
+        n_lights += !hlh_light_in_csv(&s->lights[i]);
     if (!write_document(w, n_lights))
         return hlh_fail(error, file, "out of memory");
     size = 28 + (uint64_t)w->json.size + w->bin.size;

@@ -14,6 +14,7 @@
 enum hlh_alpha { HLH_ALPHA_OPAQUE, HLH_ALPHA_MASK, HLH_ALPHA_BLEND };
 enum hlh_light_kind { HLH_LIGHT_POINT, HLH_LIGHT_SPOT, HLH_LIGHT_DIRECTIONAL };
 enum hlh_falloff { HLH_FALLOFF_SMOOTH, HLH_FALLOFF_INVERSE_SQUARE };
+enum hlh_brdf { HLH_BRDF_BLINN_PHONG, HLH_BRDF_SKIN };
 enum hlh_wrap { HLH_WRAP_REPEAT, HLH_WRAP_CLAMP, HLH_WRAP_MIRROR };
 
 /* 8-bit RGBA exactly as the file stores it (sRGB or linear is decided by the
@@ -39,6 +40,13 @@ struct hlh_material {
     float alpha_cutoff;
     enum hlh_alpha alpha;
     bool double_sided;                /* false: back faces are culled        */
+    /* Of HLH_ALPHA_MASK: the alpha test decides what the G-buffer holds, and
+     * all of the surface is blended by its alpha. */
+    bool fence;
+    /* Lies just in front of other surfaces, changes their normals and is
+     * blended over them; alpha mode and fence then do not count. */
+    bool decal;
+    enum hlh_brdf brdf;
     struct hlh_texture base_texture;      /* sRGB, a = linear alpha          */
     struct hlh_texture metal_rough_texture; /* linear, g rough, b metal      */
     struct hlh_texture normal_texture;    /* linear, tangent space           */
@@ -73,6 +81,7 @@ struct hlh_mesh {
 struct hlh_object {
     uint32_t mesh;
     float world[16];
+    bool no_shadow;                   /* casts none                          */
 };
 
 struct hlh_light {
@@ -84,6 +93,7 @@ struct hlh_light {
     float radius;                     /* metres, > 0; 0 gives nothing        */
     float inner_angle, outer_angle;   /* radians, half angles, spot only     */
     bool range_derived;               /* glTF light without a range          */
+    bool shadow;                      /* casts shadows, where asked for      */
 };
 
 /* Looks from eye to target. Up is y, or -z when looking straight up or down,
@@ -126,6 +136,11 @@ struct hlh_error { char text[512]; };
  * too), four outside around them, one white key high in front; the table is
  * in scene_finish.c.
  *
+ * glTF extras: { "halflight": { ... } } of a material with fence and decal
+ * (true) and brdf (1: HLH_BRDF_SKIN), of a KHR_lights_punctual light with
+ * shadow (true) and falloff ("smooth"), of a node with no_shadow (true). What
+ * is of another type or unknown is not read.
+ *
  * glTF: the default scene (or the first, or all root nodes); the first
  * perspective camera met; morph targets, skins, animations, occlusion and
  * material extensions are ignored; points and lines are left out; one
@@ -151,8 +166,8 @@ bool hlh_scene_lights_csv(struct hlh_scene *scene, const char *path,
 
 /* Write DIR-or-prefix: PREFIX.glb, PREFIX.lights.csv, PREFIX.camera. Nothing
  * half-written stays behind on failure.
- * The CSV holds the point lights of smooth falloff; all others go into the
- * GLB as KHR_lights_punctual. Loading the GLB gives back meshes, materials,
+ * The CSV holds the point lights of smooth falloff without shadow; all others
+ * go into the GLB as KHR_lights_punctual. Loading the GLB gives back meshes, materials,
  * images, objects and the latter lights bit for bit, in the same order, and
  * adding the CSV (not replacing by it, if the GLB has lights) the rest; the
  * camera's direction to a float's rounding. The .camera file is one line,

@@ -29,6 +29,8 @@ enum hl_pe_vary {
     HL_PE_TX, HL_PE_TY, HL_PE_TZ, HL_PE_TW,  /* HL_VARY_TANGENT              */
     HL_PE_R, HL_PE_G, HL_PE_B, HL_PE_A,  /* HL_VARY_COLOR                    */
     HL_PE_PX, HL_PE_PY, HL_PE_PZ,        /* HL_VARY_POSITION                 */
+    HL_PE_MX, HL_PE_MY, HL_PE_MW,        /* HL_VARY_MOTION: clip now ...     */
+    HL_PE_LX, HL_PE_LY, HL_PE_LW,        /* ... and of the last frame        */
     HL_PE_VARY_COUNT
 };
 
@@ -45,6 +47,9 @@ struct hl_pe_fragments {
     float vary[HL_PE_VARY_COUNT][HL_PE_BATCH];
     float duv[4][HL_PE_BATCH];                /* du/dx dv/dx du/dy dv/dy; the
                                                * same                        */
+    /* Pixels from the centre to where z and varyings were taken; set, and
+     * not zero, for stages of HL_CENTROID rows alone. */
+    float off_x[HL_PE_BATCH], off_y[HL_PE_BATCH];
     uint8_t back[HL_PE_BATCH];                /* 1: a back face              */
     uint8_t discard[HL_PE_BATCH];             /* the stage sets 1 to discard */
     /* What the stage writes: colour target, channel, fragment. Integer

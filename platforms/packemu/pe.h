@@ -85,6 +85,7 @@ struct pe_fragment_kernel {
     struct hl_pe_stage stage;
     pe_rect_fn rect;             /* may be NULL; used with screen triangles  */
     uint32_t vary;               /* bits by hl_pe_vary that it reads         */
+    bool stipples;               /* discards by HL_SPEC_STIPPLE              */
 };
 extern const struct pe_vertex_kernel pe_vertex_kernels[HL_SHADER_COUNT];
 extern const struct pe_fragment_kernel pe_fragment_kernels[HL_SHADER_COUNT];
@@ -98,6 +99,7 @@ struct pe_program {
     const struct pe_vertex_kernel *vertex;
     struct pe_fragment_kernel fragment;  /* .stage.shade NULL: depth only    */
     union pe_spec spec[HL_MAX_SPECS];    /* by id                            */
+    bool centroid;               /* of more samples than one, HL_CENTROID    */
     /* Varyings that the one stage writes and the other reads.               */
     uint8_t n_vary, vary[HL_PE_VARY_COUNT];
 };
@@ -187,6 +189,9 @@ void pe_resolve(struct pe_state *, const struct hl_bk_pass *,
  * three; UINT views: bits. */
 void pe_fetch(const struct pe_view *, uint32_t level, int32_t x, int32_t y,
               float out[4]);
+/* n <= HL_PE_BATCH texels of level 0. */
+void pe_fetch_texels(const struct pe_view *, const int32_t *x,
+                     const int32_t *y, uint32_t n, float (*out)[HL_PE_BATCH]);
 /* n texels of a row of level 0, planes [channel]; NULL planes are not made. */
 void pe_fetch_row(const struct pe_view *, int32_t x, int32_t y, uint32_t n,
                   float *const rgba[4]);

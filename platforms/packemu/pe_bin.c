@@ -120,7 +120,12 @@ static bool make_clears(struct pe_pass *p)
 
 bool pe_bins_make(struct pe_pass *p)
 {
-    return grow_bins(p) && make_clears(p);
+    if (!grow_bins(p) || !make_clears(p))
+        return false;
+    for (uint32_t i = 0; i < p->max_bin; i++)
+        if (p->bin[i])
+            p->bin[i]->shaded = p->bin[i]->blended = 0;
+    return true;
 }
 
 /* ---- load and store ------------------------------------------------------ */

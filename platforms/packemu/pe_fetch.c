@@ -79,6 +79,22 @@ void pe_fetch(const struct pe_view *v, uint32_t level, int32_t x, int32_t y,
     pe_view_decode(t, words, 1, rgba);
 }
 
+void pe_fetch_texels(const struct pe_view *v, const int32_t *x,
+                     const int32_t *y, uint32_t n, float (*out)[HL_PE_BATCH])
+{
+    const struct pe_texture *t = v->texture;
+    float *const rgba[4] = { out[0], out[1], out[2], out[3] };
+    uint32_t words[HL_PE_BATCH * 4];
+    words[0] = 0;                /* n may be 0                               */
+    if (!t || !t->memory) {
+        pe_white(rgba, n);
+        return;
+    }
+    for (uint32_t i = 0; i < n; i++)
+        row_words(t, 0, x[i], y[i], 1, words + i * t->words);
+    pe_view_decode(t, words, n, rgba);
+}
+
 void pe_fetch_row(const struct pe_view *v, int32_t x, int32_t y, uint32_t n,
                   float *const rgba[4])
 {

@@ -22,6 +22,10 @@ static void surface_points(const struct pe_draw *d,
     for (uint32_t i = 0; i < r->n; i++)
         r->half_n[i] = s->exponent[i] * 0.5f;
     pe_lit_begin(r);
+    r->brdfs = pe_spec_uint(d, HL_SPEC_BRDFS) != 0;
+    float brdf = pe_object(d)->flat_ids.w;
+    for (uint32_t i = 0; r->brdfs && i < r->n; i++)
+        r->brdf[i] = brdf;
 }
 
 static void put(const struct pe_draw *d, struct hl_pe_fragments *f,

@@ -103,6 +103,37 @@ static void invert(const float *restrict iw, uint32_t n, float *restrict w)
         w[i] = 1.0f / (iw[i] > IW_MIN ? iw[i] : IW_MIN);
 }
 
+static uint32_t sample_level(const struct pe_bin *b)
+{
+    return b->samples == 8 ? 3 : b->samples / 2;
+}
+
+/* The mean of the samples that the primitive covers, inside of it as they are;
+ * of all samples that is the centre. What hides some of them is no matter, or
+ * an earlier draw would change the light of a later one. */
+static void centroids(struct pe_bin *b, const uint16_t *pass, uint32_t at,
+                      uint32_t n)
+{
+    const int8_t (*s)[2] = pe_sample_at[sample_level(b)];
+    const uint32_t whole = (1u << b->samples) - 1;
+    struct pe_batch *g = &b->batch;
+    for (uint32_t i = 0; i < n; i++) {
+        uint32_t hull = b->raw.hull[pass[i]];
+        int32_t x = 0, y = 0, k = 0;
+        for (uint32_t j = 0; hull != whole && j < b->samples; j++) {
+            int32_t in = (int32_t)(hull >> j & 1);
+            x += in * s[j][0];
+            y += in * s[j][1];
+            k += in;
+        }
+        float scale = k ? 0.0625f / (float)k : 0.0f;
+        g->f.off_x[at + i] = (float)x * scale;
+        g->f.off_y[at + i] = (float)y * scale;
+        g->at_x[at + i] = g->dx[at + i] + g->f.off_x[at + i];
+        g->at_y[at + i] = g->dy[at + i] + g->f.off_y[at + i];
+    }
+}
+
 /* w at the other pixel of the quad, in x (axis 0) or y; step is +1 at even
  * and -1 at odd pixels. */
 static void neighbours(struct pe_batch *g, const struct pe_plane *p, int axis,
@@ -138,19 +169,31 @@ static void set_slopes(struct pe_bin *b, const struct pe_plane *p,
 {
     const struct pe_program *prog = b->draw->program;
     struct pe_batch *g = &b->batch;
+    const float *w = g->f.z;
+    if (b->centroid) {
+        eval(&p[0], g->dx + at, g->dy + at, n, g->iw + at);
+        invert(g->iw + at, n, g->w_mid + at);
+        w = g->w_mid;
+    }
     neighbours(g, &p[0], 0, at, n);
     neighbours(g, &p[0], 1, at, n);
     if (b->stage->slope)
         for (uint32_t i = at; i < at + n; i++) {
-            g->f.dzdx[i] = g->step[0][i] * (g->w_step[0][i] - g->f.z[i]);
-            g->f.dzdy[i] = g->step[1][i] * (g->w_step[1][i] - g->f.z[i]);
+            g->f.dzdx[i] = g->step[0][i] * (g->w_step[0][i] - w[i]);
+            g->f.dzdy[i] = g->step[1][i] * (g->w_step[1][i] - w[i]);
         }
     for (uint32_t k = 0; k < prog->n_vary && b->stage->uv_slope; k++) {
         uint32_t v = prog->vary[k];
         if (v != HL_PE_U && v != HL_PE_V)
             continue;
+        const float *here = g->f.vary[v];
+        if (b->centroid) {
+            eval_times(&p[1 + k], g->dx + at, g->dy + at, w + at, n,
+                       g->mid + at);
+            here = g->mid;
+        }
         for (int axis = 0; axis < 2; axis++)
-            slope(g, &p[1 + k], axis, g->f.vary[v], at, n,
+            slope(g, &p[1 + k], axis, here, at, n,
                   g->f.duv[axis * 2 + (v == HL_PE_V)]);
     }
 }
@@ -191,6 +234,11 @@ static void join(struct pe_bin *b, const struct pe_tri *t,
     const float *dx = g->dx + at, *dy = g->dy + at;
     float *z = g->f.z + at;
     place(b, t, pass, at, n);
+    if (b->centroid) {
+        centroids(b, pass, at, n);
+        dx = g->at_x + at;
+        dy = g->at_y + at;
+    }
     eval(&p[0], dx, dy, n, g->iw + at);
     invert(g->iw + at, n, z);
     for (uint32_t k = 0; k < prog->n_vary; k++) {
@@ -211,6 +259,8 @@ static void shade_run(struct pe_bin *b, const struct pe_tri *t,
                       const uint16_t *pass, uint32_t n)
 {
     struct pe_plane p[1 + HL_PE_VARY_COUNT];
+    b->shaded += n;
+    b->blended += b->ordered ? n : 0;
     set_planes(p, t, b->draw->program->n_vary);
     while (n > 0) {
         uint32_t k = joinable(b, pass, n);
@@ -243,7 +293,7 @@ static void encode_sample(struct pe_bin *b, uint32_t s)
 {
     struct pe_raw *r = &b->raw;
     enum hl_format format = b->draw->program->desc.depth;
-    uint32_t level = b->samples == 8 ? 3 : b->samples / 2;
+    uint32_t level = sample_level(b);
     float z[PE_RAW];
     if (b->samples == 1) {
         pe_depth_encode(format, r->z, r->n, r->code[0]);
@@ -273,6 +323,8 @@ static uint32_t early_tests(struct pe_bin *b)
 {
     struct pe_raw *r = &b->raw;
     bool late = b->stage && b->stage->discards;
+    if (b->centroid)
+        memcpy(r->hull, r->cover, r->n);
     if (!b->tests)
         return all_covered(r, b->samples);
     for (uint32_t s = 0; s < b->samples; s++)
@@ -362,6 +414,7 @@ void pe_draw_begin(struct pe_bin *b, uint32_t draw)
     bool colors = p->desc.n_colors > 0 && !p->desc.no_color_write;
     const struct hl_pe_stage *s = &p->fragment.stage;
     b->stage = s->shade && (colors || s->discards) ? s : NULL;
+    b->centroid = p->centroid;
     b->ordered = colors && p->desc.blend != HL_BLEND_OFF;
     b->color_dirty |= colors;
     b->raw.n = b->raw.n_runs = 0;

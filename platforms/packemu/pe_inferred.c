@@ -21,14 +21,37 @@ static inline int32_t texel(float x)
     return (int32_t)(x < 65536.0f ? x : 65536.0f);
 }
 
-static void taps_along(const int32_t *pixel, float ratio, uint32_t n,
-                       int32_t *corner, float *fraction)
+/* Where pixels lie among the centres of the L-buffer's texels. */
+void pe_light_pixels(const struct pe_draw *d, const struct hl_pe_fragments *f,
+                     float *x, float *y)
+{
+    float rx = pe_spec_float(d, HL_SPEC_RATIO_X);
+    float ry = pe_spec_float(d, HL_SPEC_RATIO_Y);
+    for (uint32_t i = 0; i < PE_LANES(f->n); i++) {
+        x[i] = ((float)f->x[i] + 0.5f) * rx - 0.5f;
+        y[i] = ((float)f->y[i] + 0.5f) * ry - 0.5f;
+    }
+    if (!d->program->centroid)
+        return;
+    for (uint32_t i = 0; i < PE_LANES(f->n); i++) {
+        x[i] += f->off_x[i] * rx;
+        y[i] += f->off_y[i] * ry;
+    }
+}
+
+/* View depths there, metres. */
+const float *pe_pixel_depths(const struct hl_pe_fragments *f)
+{
+    return f->z;
+}
+
+static void taps_along(const float *pixel, uint32_t n, int32_t *corner,
+                       float *fraction)
 {
     for (uint32_t i = 0; i < n; i++) {
-        float p = ((float)pixel[i] + 0.5f) * ratio - 0.5f;
-        float b = hl_floor(p);
+        float b = hl_floor(pixel[i]);
         corner[i] = texel(b);
-        fraction[i] = p - b;
+        fraction[i] = pixel[i] - b;
     }
 }
 
@@ -37,16 +60,19 @@ void pe_find_taps(const struct pe_draw *d, const struct hl_pe_fragments *f,
                   struct pe_taps *t)
 {
     uint32_t n = PE_LANES(f->n);
-    taps_along(f->x, pe_spec_float(d, HL_SPEC_RATIO_X), n, t->x, t->fx);
-    taps_along(f->y, pe_spec_float(d, HL_SPEC_RATIO_Y), n, t->y, t->fy);
+    float x[HL_PE_BATCH], y[HL_PE_BATCH];
+    pe_light_pixels(d, f, x, y);
+    taps_along(x, n, t->x, t->fx);
+    taps_along(y, n, t->y, t->fy);
 }
 
 /* ---- acceptance ---------------------------------------------------------- */
 
-static void thresholds(const struct pe_draw *d,
-                       const struct hl_pe_fragments *f, float *out)
+void pe_thresholds(const struct pe_draw *d, const struct hl_pe_fragments *f,
+                   float distance_texels, float *out)
 {
     uint32_t n = PE_LANES(f->n);
+    const float *z = pe_pixel_depths(f);
     bool by_slope = pe_spec_uint(d, HL_SPEC_DSF) == HL_DSF_SLOPE;
     float step = pe_frame(d)->depth.w / 65535.0f;
     float k = pe_spec_float(d, HL_SPEC_DSF_K);
@@ -56,12 +82,13 @@ static void thresholds(const struct pe_draw *d,
     float sy = 1.0f / pe_spec_float(d, HL_SPEC_RATIO_Y);
     if (!by_slope) {
         for (uint32_t i = 0; i < n; i++)
-            out[i] = tau * f->z[i];
+            out[i] = tau * z[i];
         return;
     }
     for (uint32_t i = 0; i < n; i++) {
         float slope = hl_abs(f->dzdx[i]) * sx + hl_abs(f->dzdy[i]) * sy;
-        out[i] = hl_dsf_threshold(step, k, c, f->z[i], slope, 1.0f);
+        out[i] = hl_dsf_threshold(step, k, c, z[i], slope,
+                                  distance_texels);
     }
 }
 
@@ -89,7 +116,7 @@ static void split_numbers(const struct pe_draw *d, float (*v)[HL_PE_BATCH],
 
 PE_WIDE
 static void read_dsf(const struct pe_draw *d, const struct pe_taps *t,
-                     uint32_t n, planes depth, planes id)
+                     uint32_t n, struct pe_dsf *out)
 {
     const struct pe_view *v = &d->view[HL_TEX_DSF];
     uint32_t lanes = PE_LANES(n);
@@ -97,30 +124,53 @@ static void read_dsf(const struct pe_draw *d, const struct pe_taps *t,
         words w;
         pe_gather_words(v, 0, t->x, t->y, n, w);
         for (int k = 0; k < 4; k++)
-            split_words(w[k], lanes, depth[k], id[k]);
+            split_words(w[k], lanes, out->depth[k], out->id[k]);
     } else {
         float taps[4][4][HL_PE_BATCH];
         pe_gather(v, t->x, t->y, n, taps);
         for (int k = 0; k < 4; k++)
-            split_numbers(d, taps[k], lanes, depth[k], id[k]);
+            split_numbers(d, taps[k], lanes, out->depth[k], out->id[k]);
+    }
+}
+
+void pe_fetch_dsf(const struct pe_draw *d, const int32_t *x, const int32_t *y,
+                  uint32_t n, float *depth, float *id)
+{
+    const struct pe_view *v = &d->view[HL_TEX_DSF];
+    planes texel;
+    uint32_t w[HL_PE_BATCH];
+    pe_fetch_texels(v, x, y, n, texel);
+    if (has_words(v)) {
+        memcpy(w, texel[0], n * sizeof *w);
+        split_words(w, n, depth, id);
+    } else {
+        split_numbers(d, texel, n, depth, id);
     }
 }
 
 PE_WIDE
-void pe_accept_taps(const struct pe_draw *d, const struct hl_pe_fragments *f,
-                    const struct pe_taps *t, float out[4][HL_PE_BATCH])
+void pe_accept(const struct pe_draw *d, const struct hl_pe_fragments *f,
+               const struct pe_dsf *dsf, float distance_texels,
+               float out[4][HL_PE_BATCH])
 {
     uint32_t n = PE_LANES(f->n);
     float step = pe_frame(d)->depth.w / 65535.0f;
     float threshold[HL_PE_BATCH];
-    planes depth, id;
-    thresholds(d, f, threshold);
-    read_dsf(d, t, f->n, depth, id);
+    const float *z = pe_pixel_depths(f), *id = f->vary[HL_PE_ID];
+    pe_thresholds(d, f, distance_texels, threshold);
     for (int k = 0; k < 4; k++)
         for (uint32_t i = 0; i < n; i++)
-            out[k][i] = hl_dsf_accept(depth[k][i] * step, id[k][i], f->z[i],
-                                      f->vary[HL_PE_ID][i], threshold[i],
-                                      0.5f);
+            out[k][i] = hl_dsf_accept(dsf->depth[k][i] * step, dsf->id[k][i],
+                                      z[i], id[i], threshold[i],
+                                      hl_dsf_half_step(id[i]));
+}
+
+void pe_accept_taps(const struct pe_draw *d, const struct hl_pe_fragments *f,
+                    const struct pe_taps *t, float out[4][HL_PE_BATCH])
+{
+    struct pe_dsf dsf;
+    read_dsf(d, t, f->n, &dsf);
+    pe_accept(d, f, &dsf, 1.0f, out);
 }
 
 /* hl_dsf_weights of all lanes: accepted weights renormalised in a loop without
@@ -151,13 +201,8 @@ static void dsf_weights(planes b, planes a, uint32_t lanes, uint32_t n,
     }
 }
 
-static void weights(const struct pe_draw *d, const struct hl_pe_fragments *f,
-                    const struct pe_taps *t, planes w)
+static void bilinear(const struct pe_taps *t, uint32_t n, planes b)
 {
-    uint32_t n = PE_LANES(f->n);
-    bool off = pe_spec_uint(d, HL_SPEC_DSF) == HL_DSF_OFF;
-    planes a, bilinear;
-    float (*b)[HL_PE_BATCH] = off ? w : bilinear;
     for (uint32_t i = 0; i < n; i++) {
         hl_vec4 v = hl_bilinear(hl_v2(t->fx[i], t->fy[i]));
         b[0][i] = v.x;
@@ -165,10 +210,6 @@ static void weights(const struct pe_draw *d, const struct hl_pe_fragments *f,
         b[2][i] = v.z;
         b[3][i] = v.w;
     }
-    if (off)
-        return;
-    pe_accept_taps(d, f, t, a);
-    dsf_weights(b, a, n, f->n, w);
 }
 
 /* ---- light --------------------------------------------------------------- */
@@ -225,6 +266,20 @@ static void unpack(uint32_t bits, const uint32_t *const w[4], uint32_t n,
     }
 }
 
+static uint32_t light_words(uint32_t bits)
+{
+    return bits == HL_BITS_FLOAT ? 4 : bits == HL_BITS_UNORM8 ? 1 : 2;
+}
+
+/* What a filter makes of infinities is no number, and goes too. */
+static void cut_halves(uint32_t bits, uint32_t n, planes light)
+{
+    for (int c = 0; c < 4 && bits == HL_BITS_HALF; c++)
+        for (uint32_t i = 0; i < n; i++)
+            light[c][i] = light[c][i] <= HL_HALF_MAX ? light[c][i]
+                                                     : HL_HALF_MAX;
+}
+
 /* Light of the four taps: [tap][channel]. Words that a format does not have
  * are not read. */
 static void read_light(const struct pe_draw *d, const int32_t *x,
@@ -232,22 +287,59 @@ static void read_light(const struct pe_draw *d, const int32_t *x,
 {
     const struct pe_view *v = &d->view[HL_TEX_LIGHT];
     uint32_t bits = pe_spec_uint(d, HL_SPEC_LIGHT_BITS);
-    uint32_t n_words = bits == HL_BITS_FLOAT ? 4
-                       : bits == HL_BITS_UNORM8 ? 1 : 2;
     words w[4];
     if (!has_words(v)) {
         pe_gather(v, x, y, n, taps);
-        for (int k = 0; k < 16 && bits == HL_BITS_HALF; k++)
-            for (uint32_t i = 0; i < n; i++)
-                taps[k / 4][k % 4][i] = hl_min(taps[k / 4][k % 4][i],
-                                               HL_HALF_MAX);
+        for (int k = 0; k < 4; k++)
+            cut_halves(bits, n, taps[k]);
         return;
     }
-    for (uint32_t j = 0; j < n_words; j++)
+    for (uint32_t j = 0; j < light_words(bits); j++)
         pe_gather_words(v, j, x, y, n, w[j]);
     for (int k = 0; k < 4; k++) {
         const uint32_t *const tap[4] = { w[0][k], w[1][k], w[2][k], w[3][k] };
         unpack(bits, tap, n, taps[k]);
+    }
+}
+
+void pe_fetch_light(const struct pe_draw *d, const int32_t *x,
+                    const int32_t *y, uint32_t n, float out[4][HL_PE_BATCH])
+{
+    const struct pe_view *v = &d->view[HL_TEX_LIGHT];
+    uint32_t bits = pe_spec_uint(d, HL_SPEC_LIGHT_BITS);
+    planes texel;
+    words w;
+    if (!has_words(v)) {
+        pe_fetch_texels(v, x, y, n, out);
+        cut_halves(bits, n, out);
+        return;
+    }
+    pe_fetch_texels(v, x, y, n, texel);
+    for (uint32_t j = 0; j < light_words(bits); j++)
+        memcpy(w[j], texel[j], n * sizeof w[j][0]);
+    const uint32_t *const tap[4] = { w[0], w[1], w[2], w[3] };
+    unpack(bits, tap, n, out);
+}
+
+/* All four by bilinear weights where all are accepted, a NULL: everywhere. */
+static void filter_light(const struct pe_draw *d, const struct pe_taps *t,
+                         planes a, uint32_t n, planes out)
+{
+    float u[HL_PE_BATCH], v[HL_PE_BATCH];
+    float tx = 1.0f / pe_spec_float(d, HL_SPEC_LIGHT_WIDTH);
+    float ty = 1.0f / pe_spec_float(d, HL_SPEC_LIGHT_HEIGHT);
+    planes l;
+    u[0] = v[0] = 0.0f;          /* n may be 0                               */
+    for (uint32_t i = 0; i < n; i++) {
+        u[i] = ((float)t->x[i] + 1.0f) * tx + (t->fx[i] - 0.5f) * tx;
+        v[i] = ((float)t->y[i] + 1.0f) * ty + (t->fy[i] - 0.5f) * ty;
+    }
+    pe_sample(&d->view[HL_TEX_LIGHT], u, v, NULL, n, l);
+    cut_halves(pe_spec_uint(d, HL_SPEC_LIGHT_BITS), n, l);
+    for (uint32_t i = 0; i < n; i++) {
+        bool all = !a || a[0][i] + a[1][i] + a[2][i] + a[3][i] == 4.0f;
+        for (int c = 0; c < 4; c++)
+            out[c][i] = all ? l[c][i] : out[c][i];
     }
 }
 
@@ -259,22 +351,70 @@ static void weigh(planes taps[4], planes w, uint32_t n, planes out)
                         taps[2][c][i] * w[2][i] + taps[3][c][i] * w[3][i];
 }
 
-/* The L-buffer under the fragments, filtered. */
+/* Plain bilinear. */
+static void unchecked_light(const struct pe_draw *d,
+                            const struct hl_pe_fragments *f, planes out)
+{
+    struct pe_taps t;
+    planes taps[4], b;
+    pe_find_taps(d, f, &t);
+    if (pe_spec_uint(d, HL_SPEC_BILINEAR)) {
+        filter_light(d, &t, NULL, f->n, out);
+        return;
+    }
+    bilinear(&t, PE_LANES(f->n), b);
+    read_light(d, t.x, t.y, f->n, taps);
+    weigh(taps, b, PE_LANES(f->n), out);
+}
+
+static bool all_accepted(planes a, uint32_t n)
+{
+    float least = 4.0f;
+    for (uint32_t i = 0; i < n; i++)
+        least = hl_min(least, a[0][i] + a[1][i] + a[2][i] + a[3][i]);
+    return least == 4.0f;
+}
+
+/* The L-buffer under the fragments of opaque surfaces, by the DSF. */
+static void dsf_light(const struct pe_draw *d, const struct hl_pe_fragments *f,
+                      planes out)
+{
+    uint32_t lanes = PE_LANES(f->n);
+    bool filter = pe_spec_uint(d, HL_SPEC_BILINEAR) != 0;
+    struct pe_taps t;
+    struct pe_dsf dsf;
+    planes taps[4], a, b, w;
+    pe_find_taps(d, f, &t);
+    read_dsf(d, &t, f->n, &dsf);
+    pe_accept(d, f, &dsf, 1.0f, a);
+    if (!filter || !all_accepted(a, f->n)) {
+        bilinear(&t, lanes, b);
+        dsf_weights(b, a, lanes, f->n, w);
+        read_light(d, t.x, t.y, f->n, taps);
+        weigh(taps, w, lanes, out);
+    }
+    if (filter)
+        filter_light(d, &t, a, f->n, out);
+    if (pe_spec_uint(d, HL_SPEC_FILL))
+        pe_fill_light(d, f, &dsf, a, out);
+}
+
 PE_WIDE
 static void light(const struct pe_draw *d, const struct hl_pe_fragments *f,
                   planes out)
 {
-    planes taps[4], w;
-    if (pe_spec_uint(d, HL_SPEC_DSF) == HL_DSF_EXACT) {
+    planes taps[4];
+    uint32_t dsf = pe_spec_uint(d, HL_SPEC_DSF);
+    if (pe_spec_uint(d, HL_SPEC_STIPPLE)) {
+        pe_stippled_light(d, f, out);
+    } else if (dsf == HL_DSF_EXACT) {
         read_light(d, f->x, f->y, f->n, taps);
         memcpy(out, taps[0], sizeof taps[0]);
-        return;
+    } else if (dsf == HL_DSF_OFF) {
+        unchecked_light(d, f, out);
+    } else {
+        dsf_light(d, f, out);
     }
-    struct pe_taps t;
-    pe_find_taps(d, f, &t);
-    weights(d, f, &t, w);
-    read_light(d, t.x, t.y, f->n, taps);
-    weigh(taps, w, PE_LANES(f->n), out);
 }
 
 void hl_pe_read_lights(const struct pe_draw *d,
@@ -283,6 +423,10 @@ void hl_pe_read_lights(const struct pe_draw *d,
 {
     float scale = pe_spec_float(d, HL_SPEC_LIGHT_SCALE);
     planes l;
+    if (pe_spec_uint(d, HL_SPEC_DSF) == HL_DSF_DARK) {
+        memset(out, 0, 6 * sizeof out[0]);
+        return;
+    }
     light(d, f, l);
     for (uint32_t i = 0; i < PE_LANES(f->n); i++) {
         hl_vec3 c = hl_v3(l[0][i] * scale, l[1][i] * scale, l[2][i] * scale);

@@ -60,16 +60,27 @@ static inline float pe_rsqrt(float x) { return 1.0f / sqrtf(x); }
 
 /* The rows of pe_kernels.c. */
 void pe_vertex_mesh(const struct pe_draw *, struct pe_vertices *);
+void pe_vertex_volume(const struct pe_draw *, struct pe_vertices *);
 void pe_gbuffer_plain(const struct pe_draw *, struct hl_pe_fragments *);
 void pe_gbuffer_full(const struct pe_draw *, struct hl_pe_fragments *);
 void pe_gbuffer_plain_exp(const struct pe_draw *, struct hl_pe_fragments *);
 void pe_gbuffer_full_exp(const struct pe_draw *, struct hl_pe_fragments *);
+void pe_gbuffer_plain_motion(const struct pe_draw *,
+                             struct hl_pe_fragments *);
+void pe_gbuffer_full_motion(const struct pe_draw *, struct hl_pe_fragments *);
+void pe_gbuffer_plain_exp_motion(const struct pe_draw *,
+                                 struct hl_pe_fragments *);
+void pe_gbuffer_full_exp_motion(const struct pe_draw *,
+                                struct hl_pe_fragments *);
 void pe_light_batch(const struct pe_draw *, struct hl_pe_fragments *);
 void pe_light_tiles(const struct pe_draw *, struct hl_pe_fragments *);
 void pe_light_batch_rect(const struct pe_draw *, const struct hl_rect *,
                          float (*out)[PE_BIN * PE_BIN]);
 void pe_light_tiles_rect(const struct pe_draw *, const struct hl_rect *,
                          float (*out)[PE_BIN * PE_BIN]);
+void pe_light_map(const struct pe_draw *, struct hl_pe_fragments *);
+void pe_light_map_rect(const struct pe_draw *, const struct hl_rect *,
+                       float (*out)[PE_BIN * PE_BIN]);
 void pe_material_plain(const struct pe_draw *, struct hl_pe_fragments *);
 void pe_material_full(const struct pe_draw *, struct hl_pe_fragments *);
 void pe_reject_plain(const struct pe_draw *, struct hl_pe_fragments *);
@@ -84,4 +95,7 @@ void pe_conform(const struct pe_draw *, struct hl_pe_fragments *);
 void pe_depth_copy(const struct pe_draw *, struct hl_pe_fragments *);
 void pe_id_plain(const struct pe_draw *, struct hl_pe_fragments *);
 void pe_id_full(const struct pe_draw *, struct hl_pe_fragments *);
+void pe_mask(const struct pe_draw *, struct hl_pe_fragments *);
+void pe_stipple_plain(const struct pe_draw *, struct hl_pe_fragments *);
+void pe_stipple_full(const struct pe_draw *, struct hl_pe_fragments *);
 #endif

@@ -11,7 +11,8 @@ struct pass {
     const struct hl_frame_block *frame;
     uint32_t kinds, falloff, two16;
     enum pe_lit_specular what;
-    bool barg, channel;
+    bool barg, channel, brdfs;
+    bool map;                    /* the one light has a shadow map           */
     float out;
 };
 
@@ -20,7 +21,7 @@ struct texels {
     float x[PE_LIGHT_RUN], y[PE_LIGHT_RUN];          /* pixel centres        */
     float depth[3][PE_LIGHT_RUN];                    /* 1 channel, or BARG 3 */
     float normal[2][PE_LIGHT_RUN];
-    float code[PE_LIGHT_RUN];                        /* exponent             */
+    float code[PE_LIGHT_RUN], brdf[PE_LIGHT_RUN];    /* exponent, its pair's */
 };
 
 static struct pass begin(const struct pe_draw *d)
@@ -34,8 +35,10 @@ static struct pass begin(const struct pe_draw *d)
     p.two16 = pe_spec_uint(d, HL_SPEC_TWO16);
     p.what = specular ? PE_LIT_LUMINANCE : PE_LIT_NONE;
     p.channel = specular == HL_SPECULAR_CHANNEL;
+    p.brdfs = pe_spec_uint(d, HL_SPEC_BRDFS) != 0;
     p.barg = pe_spec_uint(d, HL_SPEC_DEPTH_READ) == HL_DEPTH_READ_BARG;
     p.out = pe_spec_float(d, HL_SPEC_LIGHT_OUT);
+    p.map = false;
     return p;
 }
 
@@ -79,6 +82,20 @@ static void normals(const struct pass *p, struct texels *t,
     }
 }
 
+/* Pairs of exponent and BRDF to codes and indices, which the sums read; after
+ * pe_lit_begin. */
+static void brdfs(const struct pass *p, struct texels *t,
+                  struct pe_lit_run *r)
+{
+    r->brdfs = true;
+    for (uint32_t i = 0; i < r->n; i++) {
+        hl_vec2 pair = hl_two16_decode(p->two16, hl_v2(t->code[i],
+                                                       t->brdf[i]));
+        t->code[i] = pair.x;
+        r->brdf[i] = hl_brdf_decode(pair.y);
+    }
+}
+
 static void exponents(const struct pass *p, const struct texels *t,
                       struct pe_lit_run *r)
 {
@@ -95,8 +112,10 @@ static void surface_points(const struct pass *p, struct texels *t,
     depths(p, t, r->n);
     positions(p, t, r);
     normals(p, t, r);
-    exponents(p, t, r);
     pe_lit_begin(r);
+    if (p->brdfs)
+        brdfs(p, t, r);
+    exponents(p, t, r);
 }
 
 /* Sums to what is stored; `a` in place. */
@@ -111,6 +130,8 @@ static void shade(const struct pass *p, struct texels *t,
 {
     surface_points(p, t, r, n);
     pe_lit_add(r, p->what, p->kinds, p->falloff, list.light, list.count);
+    if (p->map)
+        pe_shadow(p->draw, r, n);
     for (int c = 0; c < 3; c++)
         scale(r->diffuse[c], r->n, p->out);
     scale(r->specular[0], r->n, p->out);
@@ -127,10 +148,11 @@ static void fetch_row(const struct pass *p, struct texels *t, int32_t x,
     float *depth[4] = { t->depth[0] + at, b ? t->depth[1] + at : NULL,
                         b ? t->depth[2] + at : NULL, NULL };
     float *normal[4] = { t->normal[0] + at, t->normal[1] + at, NULL, NULL };
-    float *code[4] = { t->code + at, NULL, NULL, NULL };
+    float *code[4] = { t->code + at, p->brdfs ? t->brdf + at : NULL, NULL,
+                       NULL };
     pe_fetch_row(&v[HL_TEX_DEPTH], x, y, n, depth);
     pe_fetch_row(&v[HL_TEX_NORMAL], x, y, n, normal);
-    if (p->channel)
+    if (p->channel || p->brdfs)
         pe_fetch_row(&v[HL_TEX_EXPONENT], x, y, n, code);
     for (uint32_t i = 0; i < n; i++) {
         t->x[at + i] = (float)(x + (int32_t)i) + 0.5f;
@@ -184,6 +206,14 @@ void pe_light_batch_rect(const struct pe_draw *d, const struct hl_rect *r,
     light_part(&p, r, r->x, r->y, pe_lit_batch(d), out);
 }
 
+void pe_light_map_rect(const struct pe_draw *d, const struct hl_rect *r,
+                       float (*out)[PE_BIN * PE_BIN])
+{
+    struct pass p = begin(d);
+    p.map = true;
+    light_part(&p, r, r->x, r->y, pe_lit_batch(d), out);
+}
+
 /* The list of tile (tx, ty); none where the buffer ends. */
 static struct pe_lit_list tile_list(const struct pass *p, int32_t tx,
                                     int32_t ty)
@@ -234,10 +264,11 @@ static void fetch_one(const struct pass *p, struct texels *t, int32_t x,
     pe_fetch(&v[HL_TEX_NORMAL], 0, x, y, c);
     t->normal[0][at] = c[0];
     t->normal[1][at] = c[1];
-    t->code[at] = 0.0f;
-    if (p->channel) {
+    t->code[at] = t->brdf[at] = 0.0f;
+    if (p->channel || p->brdfs) {
         pe_fetch(&v[HL_TEX_EXPONENT], 0, x, y, c);
         t->code[at] = c[0];
+        t->brdf[at] = c[1];
     }
     t->x[at] = (float)x + 0.5f;
     t->y[at] = (float)y + 0.5f;
@@ -263,6 +294,13 @@ static void light_fragments(const struct pass *p, struct hl_pe_fragments *f,
 void pe_light_batch(const struct pe_draw *d, struct hl_pe_fragments *f)
 {
     struct pass p = begin(d);
+    light_fragments(&p, f, 0, f->n, pe_lit_batch(d));
+}
+
+void pe_light_map(const struct pe_draw *d, struct hl_pe_fragments *f)
+{
+    struct pass p = begin(d);
+    p.map = true;
     light_fragments(&p, f, 0, f->n, pe_lit_batch(d));
 }
 

@@ -10,6 +10,7 @@ void pe_lit_begin(struct pe_lit_run *r)
 {
     memset(r->diffuse, 0, sizeof r->diffuse);
     memset(r->specular, 0, sizeof r->specular);
+    r->brdfs = false;
     for (uint32_t i = 0; i < r->n; i++) {
         hl_vec3 p = hl_v3(r->px[i], r->py[i], r->pz[i]);
         float s = pe_rsqrt(hl_dot3(p, p));
@@ -26,7 +27,7 @@ void pe_lit_begin(struct pe_lit_run *r)
  * max(x, 1e-20) are sums here, and hl_specular is hl_pow of what cannot be
  * negative: compilers make selects of a maximum's uses, three for one. */
 PE_INLINE void add(struct pe_lit_run *r, const hl_vec4 *light,
-                   enum shape shape, enum pe_lit_specular what)
+                   enum shape shape, enum pe_lit_specular what, bool brdfs)
 {
     hl_vec4 a = light[0], b = light[1];
     bool cone = shape == SPOT_SMOOTH || shape == SPOT_INVERSE;
@@ -53,10 +54,15 @@ PE_INLINE void add(struct pe_lit_run *r, const hl_vec4 *light,
         }
         if (cone)
             att *= hl_spot(-hl_dot3(l, axis), scale, offset);
-        float ndl = hl_max(hl_dot3(n, l), 0.0f) * att;
-        r->diffuse[0][i] += b.x * ndl;
-        r->diffuse[1][i] += b.y * ndl;
-        r->diffuse[2][i] += b.z * ndl;
+        float cosine = hl_dot3(n, l);
+        float ndl = hl_max(cosine, 0.0f) * att, diffuse = ndl;
+        if (brdfs) {
+            float skin = hl_diffuse_skin(cosine) * att;
+            diffuse = r->brdf[i] == (float)HL_BRDF_SKIN_INDEX ? skin : ndl;
+        }
+        r->diffuse[0][i] += b.x * diffuse;
+        r->diffuse[1][i] += b.y * diffuse;
+        r->diffuse[2][i] += b.z * diffuse;
         if (what == PE_LIT_NONE)
             continue;
         hl_vec3 h = hl_v3(l.x + r->vx[i], l.y + r->vy[i], l.z + r->vz[i]);
@@ -79,7 +85,11 @@ typedef void (*add_fn)(struct pe_lit_run *, const hl_vec4 *);
     PE_WIDE                                                                  \
     static void add_##shape##_##what(struct pe_lit_run *r,                   \
                                      const hl_vec4 *light)                   \
-    { add(r, light, shape, PE_LIT_##what); }
+    { add(r, light, shape, PE_LIT_##what, false); }                          \
+    PE_WIDE                                                                  \
+    static void add_##shape##_##what##_BRDFS(struct pe_lit_run *r,           \
+                                             const hl_vec4 *light)           \
+    { add(r, light, shape, PE_LIT_##what, true); }
 #define PE_ADD_SHAPE(shape)                                                  \
     PE_ADD(shape, NONE) PE_ADD(shape, LUMINANCE) PE_ADD(shape, COLOR)
 PE_ADD_SHAPE(SMOOTH)
@@ -88,9 +98,12 @@ PE_ADD_SHAPE(SPOT_SMOOTH)
 PE_ADD_SHAPE(SPOT_INVERSE)
 PE_ADD_SHAPE(PARALLEL)
 
+/* [shape][what][brdfs] */
+#define PE_PAIR(name) { name, name##_BRDFS }
 #define PE_ROW(shape)                                                        \
-    { add_##shape##_NONE, add_##shape##_LUMINANCE, add_##shape##_COLOR }
-static const add_fn adders[SHAPES][PE_LIT_COUNT] = {
+    { PE_PAIR(add_##shape##_NONE), PE_PAIR(add_##shape##_LUMINANCE),         \
+      PE_PAIR(add_##shape##_COLOR) }
+static const add_fn adders[SHAPES][PE_LIT_COUNT][2] = {
     PE_ROW(SMOOTH), PE_ROW(INVERSE), PE_ROW(SPOT_SMOOTH),
     PE_ROW(SPOT_INVERSE), PE_ROW(PARALLEL)
 };
@@ -125,7 +138,7 @@ void pe_lit_add(struct pe_lit_run *r, enum pe_lit_specular what,
     uint32_t stride = stride_of(kinds);
     for (uint32_t i = 0; i < count; i++, light += stride)
         if (!black(light))
-            adders[shape_of(light, kinds, falloff)][what](r, light);
+            adders[shape_of(light, kinds, falloff)][what][r->brdfs](r, light);
 }
 
 struct pe_lit_list pe_lit_batch(const struct pe_draw *d)

@@ -50,6 +50,6 @@ void pe_reject_plain(const struct pe_draw *d, struct hl_pe_fragments *f)
 
 void pe_reject_full(const struct pe_draw *d, struct hl_pe_fragments *f)
 {
-    pe_alpha_test(d, f);
+    pe_alpha_test(d, f, true);
     pe_reject_plain(d, f);
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Zlib */
-/* Small stages: shaders/count.frag, depth_copy.frag and id.frag. */
+/* Small stages: shaders/count.frag, depth_copy.frag, id.frag, mask.frag and
+ * stipple.frag. */
 #include "platforms/packemu/pe_kernel.h"
 #include "platforms/packemu/pe_surface.h"
 
@@ -35,10 +36,11 @@ void pe_count_tiles(const struct pe_draw *d, struct hl_pe_fragments *f)
 
 void pe_depth_copy(const struct pe_draw *d, struct hl_pe_fragments *f)
 {
+    bool barg = pe_spec_uint(d, HL_SPEC_DEPTH_READ) == HL_DEPTH_READ_BARG;
     for (uint32_t i = 0; i < f->n; i++) {
         float c[4];
         pe_fetch(&d->view[HL_TEX_DEPTH], 0, f->x[i], f->y[i], c);
-        put(f, i, c[0]);
+        put(f, i, barg ? hl_depth_barg(hl_v3(c[0], c[1], c[2])) : c[0]);
     }
 }
 
@@ -55,6 +57,31 @@ void pe_id_plain(const struct pe_draw *d, struct hl_pe_fragments *f)
 
 void pe_id_full(const struct pe_draw *d, struct hl_pe_fragments *f)
 {
-    pe_alpha_test(d, f);
+    pe_alpha_test(d, f, true);
     pe_id_plain(d, f);
+}
+
+void pe_mask(const struct pe_draw *d, struct hl_pe_fragments *f)
+{
+    pe_alpha_test(d, f, true);
+}
+
+static void stipple(const struct pe_draw *d, struct hl_pe_fragments *f,
+                    bool full)
+{
+    float code = (pe_object(d)->flat_ids.z + 1.0f) / 255.0f;
+    pe_alpha_test(d, f, full);
+    pe_stipple_test(d, f);
+    for (uint32_t i = 0; i < f->n; i++)
+        put(f, i, code);
+}
+
+void pe_stipple_plain(const struct pe_draw *d, struct hl_pe_fragments *f)
+{
+    stipple(d, f, false);
+}
+
+void pe_stipple_full(const struct pe_draw *d, struct hl_pe_fragments *f)
+{
+    stipple(d, f, true);
 }

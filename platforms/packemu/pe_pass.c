@@ -199,8 +199,15 @@ enum hl_result pe_pass_run(void *state, const struct hl_bk_pass *pass,
                   ": no memory to draw it in", NULL);
         return HL_ERR_MEMORY;
     }
-    s->timing[s->n_timings].label = pass->label;
-    s->timing[s->n_timings++].ms = pe_clock_ms() - begin;
+    struct hl_timing *t = &s->timing[s->n_timings++];
+    memset(t, 0, sizeof *t);
+    t->label = pass->label;
+    t->ms = pe_clock_ms() - begin;
+    for (uint32_t i = 0; i < s->pass->max_bin; i++)
+        if (s->pass->bin[i]) {
+            t->fragments += s->pass->bin[i]->shaded;
+            t->blended += s->pass->bin[i]->blended;
+        }
     return HL_OK;
 }
 

@@ -106,6 +106,7 @@ struct pe_raw {
     uint16_t at[PE_RAW + PE_LANES8];     /* pixel: y * PE_BIN + x            */
     float z[PE_RAW + PE_LANES8];
     uint8_t cover[PE_RAW], back[PE_RAW]; /* with more samples than one       */
+    uint8_t hull[PE_RAW];    /* cover before the tests, for centroids        */
     uint32_t code[PE_MAX_SAMPLES][PE_RAW];
     uint16_t pass[PE_RAW];
     uint32_t start[PE_RAW + 1];
@@ -119,6 +120,10 @@ struct pe_batch {
     uint32_t code[PE_MAX_SAMPLES][HL_PE_BATCH];
     float dx[HL_PE_BATCH], dy[HL_PE_BATCH], iw[HL_PE_BATCH];
     float step[2][HL_PE_BATCH], w_step[2][HL_PE_BATCH];
+    /* Where attributes are taken, from the anchor; w and an attribute at the
+     * centre. Of centroids. */
+    float at_x[HL_PE_BATCH], at_y[HL_PE_BATCH];
+    float w_mid[HL_PE_BATCH], mid[HL_PE_BATCH];
     uint32_t words[4 * HL_PE_BATCH];
     struct hl_pe_fragments f;
 };
@@ -145,6 +150,7 @@ struct pe_bin {
     uint8_t *stencil;        /* NULL: the format has none                    */
     float (*planes)[PE_BIN * PE_BIN];    /* of rect stages                   */
     bool color_dirty, depth_dirty;
+    uint64_t shaded, blended;    /* of the pass, on this thread              */
     /* The draw at work. */
     const struct pe_draw *draw;
     const struct hl_pe_stage *stage;
@@ -152,6 +158,7 @@ struct pe_bin {
     bool tests;
     bool ordered;            /* blends: no pixel twice in a batch            */
     bool covered;            /* every fragment of a batch is written         */
+    bool centroid;           /* the program's                                */
     struct pe_raw raw;
     struct pe_batch batch;
     uint32_t stamp, stamps[PE_BIN * PE_BIN];

@@ -32,6 +32,8 @@ static void set_defaults(union pe_spec *spec)
     spec[HL_SPEC_LIGHT_SCALE].f = 1.0f;
     spec[HL_SPEC_ID_STEPS].f = 65535.0f;
     spec[HL_SPEC_LIGHT_OUT].f = 1.0f;
+    spec[HL_SPEC_MAP_SIZE].f = 1.0f;
+    spec[HL_SPEC_MAP_FACES].u = 1;
 }
 
 static void take_specs(union pe_spec *spec, const struct hl_prog_desc *d)
@@ -87,10 +89,28 @@ static void narrow(struct pe_program *p)
     struct hl_pe_stage *s = &p->fragment.stage;
     if (p->desc.fragment.builtin == HL_SHADER_NONE)
         return;
-    s->discards = s->discards && p->spec[HL_SPEC_MASK].u != 0;
+    bool stippled = p->fragment.stipples && p->spec[HL_SPEC_STIPPLE].u != 0;
+    s->discards = stippled ||
+                  (s->discards && p->spec[HL_SPEC_MASK].u != 0);
     s->uv_slope = s->uv_slope && (p->spec[HL_SPEC_TEXTURES].u != 0 ||
                                   p->spec[HL_SPEC_MASK].u != 0);
     s->slope = s->slope && p->spec[HL_SPEC_DSF].u == HL_DSF_SLOPE;
+}
+
+/* Rows with HL_CENTROID, where one sample does not make it the centre. */
+static bool at_centroid(const struct hl_prog_desc *d)
+{
+    switch (d->fragment.builtin) {
+    case HL_SHADER_MATERIAL_PLAIN_CENTROID_FRAG:
+    case HL_SHADER_MATERIAL_FULL_CENTROID_FRAG:
+    case HL_SHADER_MATERIAL_PLAIN_FILTER_CENTROID_FRAG:
+    case HL_SHADER_MATERIAL_FULL_FILTER_CENTROID_FRAG:
+    case HL_SHADER_MATERIAL_PLAIN_TAPS_CENTROID_FRAG:
+    case HL_SHADER_MATERIAL_FULL_TAPS_CENTROID_FRAG:
+        return d->samples > 1;
+    default:
+        return false;
+    }
 }
 
 static void list_varyings(struct pe_program *p)
@@ -121,6 +141,7 @@ enum hl_result pe_prog_create(void *state, uint32_t slot,
         return lacks(s, desc, "more than four colour targets");
     take_specs(p.spec, desc);
     narrow(&p);
+    p.centroid = at_centroid(desc);
     list_varyings(&p);
     /* Borrowed for the call only. */
     p.desc.label = NULL;

@@ -2,12 +2,19 @@
 #include <string.h>
 #include "platforms/packemu/pe_kernel.h"
 #include "platforms/packemu/pe_surface.h"
+#include "shaders/shared/stipple.h"
 
 typedef float planes[4][HL_PE_BATCH];
 
 static bool textured(const struct pe_draw *d, uint32_t bit)
 {
     return (pe_spec_uint(d, HL_SPEC_TEXTURES) & bit) != 0;
+}
+
+static void fill(float *out, uint32_t n, float x)
+{
+    for (uint32_t i = 0; i < n; i++)
+        out[i] = x;
 }
 
 static void sample(const struct pe_draw *d, uint32_t slot,
@@ -38,20 +45,47 @@ static void base_color(const struct pe_draw *d,
 static void alpha_test(const struct pe_draw *d, struct hl_pe_fragments *f,
                        const float *alpha)
 {
-    float cutoff = pe_material(d)->params.w;
-    bool mask = pe_spec_uint(d, HL_SPEC_MASK) != 0;
+    uint32_t mask = pe_spec_uint(d, HL_SPEC_MASK);
+    float least = mask == 2 ? HL_ALPHA_VISIBLE : pe_material(d)->params.w;
     for (uint32_t i = 0; i < f->n; i++)
-        f->discard[i] = mask && alpha[i] < cutoff;
+        f->discard[i] = mask && alpha[i] < least;
 }
 
-void pe_alpha_test(const struct pe_draw *d, struct hl_pe_fragments *f)
+void pe_surface_alpha(const struct pe_draw *d,
+                      const struct hl_pe_fragments *f, bool full, float *out)
 {
     planes base;
-    if (pe_spec_uint(d, HL_SPEC_MASK) != 0)
-        base_color(d, f, base);
-    else
-        memset(base[3], 0, sizeof base[3]);
-    alpha_test(d, f, base[3]);
+    if (!full) {
+        fill(out, PE_LANES(f->n), pe_material(d)->base.w);
+        return;
+    }
+    base_color(d, f, base);
+    memcpy(out, base[3], sizeof base[3]);
+}
+
+void pe_alpha_test(const struct pe_draw *d, struct hl_pe_fragments *f,
+                   bool full)
+{
+    float alpha[HL_PE_BATCH];
+    /* Factors alone have no cutoff. */
+    uint32_t mask = pe_spec_uint(d, HL_SPEC_MASK);
+    if (mask == 0 || (!full && mask != 2)) {
+        memset(f->discard, 0, sizeof f->discard);
+        return;
+    }
+    pe_surface_alpha(d, f, full, alpha);
+    alpha_test(d, f, alpha);
+}
+
+void pe_stipple_test(const struct pe_draw *d, struct hl_pe_fragments *f)
+{
+    uint32_t side = pe_spec_uint(d, HL_SPEC_STIPPLE);
+    if (side == 0)
+        return;
+    hl_vec2 cell = hl_stipple_cell(pe_uint(pe_object(d)->flat_ids.z), side);
+    int32_t x = (int32_t)cell.x, y = (int32_t)cell.y, in = (int32_t)side - 1;
+    for (uint32_t i = 0; i < f->n; i++)
+        f->discard[i] |= (f->x[i] & in) != x || (f->y[i] & in) != y;
 }
 
 /* Metallic and roughness, by factor and texture. */
@@ -118,12 +152,6 @@ static void read_full(const struct pe_draw *d, struct hl_pe_fragments *f,
         s->specular[2][i] = ks.z * weight;
     }
     lit_base(d, f, s);
-}
-
-static void fill(float *out, uint32_t n, float x)
-{
-    for (uint32_t i = 0; i < n; i++)
-        out[i] = x;
 }
 
 static void fill3(float (*out)[HL_PE_BATCH], uint32_t n, float x, float y,

@@ -19,8 +19,14 @@ void pe_read_surface(const struct pe_draw *, struct hl_pe_fragments *,
 /* Unit view-space normals. */
 void pe_read_normal(const struct pe_draw *, const struct hl_pe_fragments *,
                     bool full, float out[3][HL_PE_BATCH]);
-/* Sets every discard: 0 or, where masked, by alpha. For full stages. */
-void pe_alpha_test(const struct pe_draw *, struct hl_pe_fragments *);
+/* Alpha alone. */
+void pe_surface_alpha(const struct pe_draw *, const struct hl_pe_fragments *,
+                      bool full, float *out);
+/* Sets every discard: 0 or, by HL_SPEC_MASK, by alpha. */
+void pe_alpha_test(const struct pe_draw *, struct hl_pe_fragments *,
+                   bool full);
+/* shaders/stipple.glsl: discards too what is not on the object's pattern. */
+void pe_stipple_test(const struct pe_draw *, struct hl_pe_fragments *);
 /* The exponent's code for the G-buffer. */
 void pe_exponent_code(const struct pe_draw *, const struct hl_pe_fragments *,
                       bool full, float *out);

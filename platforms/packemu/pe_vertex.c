@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Zlib */
-/* shaders/mesh.vert: every mesh pass. What the draw has once (material,
- * exponent code, far) stays in the uniform blocks. */
+/* shaders/mesh.vert: every mesh pass; shaders/volume.vert. What the draw has
+ * once (material, exponent code, far) stays in the uniform blocks. */
 #include <string.h>
 #include "platforms/packemu/pe_kernel.h"
 
@@ -59,6 +59,22 @@ static void tangents(const struct hl_object_block *o, struct pe_vertices *v,
         v->vary[HL_PE_TW][i] = hl_tangent_w_sign(w[i]) * mirrored;
 }
 
+/* x, y and w of both frames' clip positions. */
+static void motion(const struct pe_draw *d, float (*position)[PE_RUN],
+                   uint32_t n, struct pe_vertices *v)
+{
+    const struct hl_motion_block *m = pe_block(d, HL_SLOT_MOTION, sizeof *m);
+    const hl_mat4 *mat[2] = { &m->now, &m->before };
+    for (int k = 0; k < 2; k++) {
+        float clip[4][PE_RUN];
+        float (*out)[PE_RUN] = &v->vary[HL_PE_MX + 3 * k];
+        transform(mat[k], 4, 1.0f, position, n, clip);
+        memcpy(out[0], clip[0], sizeof clip[0]);
+        memcpy(out[1], clip[1], sizeof clip[1]);
+        memcpy(out[2], clip[3], sizeof clip[3]);
+    }
+}
+
 void pe_vertex_mesh(const struct pe_draw *d, struct pe_vertices *v)
 {
     const struct hl_object_block *o = pe_object(d);
@@ -84,4 +100,28 @@ void pe_vertex_mesh(const struct pe_draw *d, struct pe_vertices *v)
     if (vary & 1u << HL_PE_PX)
         transform(&o->model_view, 3, 1.0f, position, n,
                   &v->vary[HL_PE_PX]);
+    if (vary & 1u << HL_PE_MX)
+        motion(d, position, n, v);
+}
+
+/* shaders/volume.vert. The sum has mesh.vert's order, and w = 1 changes no
+ * bit of it: caps get their mesh's depths. */
+void pe_vertex_volume(const struct pe_draw *d, struct pe_vertices *v)
+{
+    const struct hl_volume_block *b = pe_block(d, HL_SLOT_VOLUME, sizeof *b);
+    const float light[3] = { b->light.x, b->light.y, b->light.z };
+    float (*p)[PE_RUN] = v->attr[HL_ATTR_POSITION], m[4][4];
+    uint32_t n = PE_LANES(v->n);
+    for (int k = 0; k < 3; k++)
+        for (uint32_t i = 0; i < n; i++) {
+            float away = p[k][i] * b->light.w - light[k];
+            p[k][i] = p[3][i] > 0.5f ? p[k][i] : away;
+        }
+    memcpy(m, &b->clip, sizeof m);
+    for (int r = 0; r < 4; r++)
+        for (uint32_t i = 0; i < n; i++)
+            v->clip[r][i] = m[0][r] * p[0][i] + m[1][r] * p[1][i] +
+                            m[2][r] * p[2][i] +
+                            m[3][r] * (p[3][i] > 0.5f ? 1.0f : 0.0f);
+    shift(d, n, v->clip);
 }

@@ -155,6 +155,9 @@ void pe_rect_run(struct pe_bin *b, const struct hl_rect *r)
     if (!b->stage)
         return;
     p->fragment.rect(b->draw, r, b->planes);
+    uint64_t n = (uint64_t)r->width * (uint64_t)r->height;
+    b->shaded += n;
+    b->blended += b->ordered ? n : 0;
     /* They write one target; others get zeros, on any thread. */
     if (p->desc.n_colors > 1)
         memset(b->planes[4], 0, (p->desc.n_colors - 1) * 4 *

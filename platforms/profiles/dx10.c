@@ -28,11 +28,12 @@ const struct hl_profile hl_profile_dx10 = {
     },
     /* R24G8_TYPELESS, tested as D24_UNORM_S8_UINT, read as
      * R24_UNORM_X8_TYPELESS (C). D32_FLOAT is required too, for machines
-     * that lack the packed 24 bits. */
+     * that lack the packed 24 bits, and with a stencil. */
     .depth = {
         { .format = HL_FORMAT_D24_UNORM_S8,
           .depth_read = HL_DEPTH_READ_FLOAT },
         { .format = HL_FORMAT_D32_FLOAT },
+        { .format = HL_FORMAT_D32_FLOAT_S8 },
     },
     .no_blend = { HL_FORMAT_RGBA32_FLOAT, HL_FORMAT_R32_FLOAT },
     .id_steps = 65535.0f,

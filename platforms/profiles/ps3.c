@@ -42,6 +42,7 @@ const struct hl_profile hl_profile_ps3 = {
           .console = { .remap = REMAP_BARG } },
         { .format = HL_FORMAT_D24_UNORM_S8, .on = HL_ON_STAND_IN },
         { .format = HL_FORMAT_D32_FLOAT, .on = HL_ON_STAND_IN },
+        { .format = HL_FORMAT_D32_FLOAT_S8, .on = HL_ON_STAND_IN },
     },
     /* F_W32Z32Y32X32 and F_X32 (C 2.2: medium). */
     .no_blend = { HL_FORMAT_RGBA32_FLOAT, HL_FORMAT_R32_FLOAT },

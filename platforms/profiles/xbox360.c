@@ -61,6 +61,7 @@ const struct hl_profile hl_profile_xbox360 = {
         { .format = HL_FORMAT_D24_FLOAT_S8, .on = HL_ON_CONSOLE,
           .console = RESOLVE_WORDS },
         { .format = HL_FORMAT_D32_FLOAT, .on = HL_ON_STAND_IN },
+        { .format = HL_FORMAT_D32_FLOAT_S8, .on = HL_ON_STAND_IN },
         { .format = HL_FORMAT_D24_UNORM_S8, .on = HL_ON_STAND_IN },
     },
     /* No FP16 and FP32 format blends (C 1.2). */

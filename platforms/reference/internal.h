@@ -138,6 +138,7 @@ struct hlr_light {
     double color[3];
     double radius2;
     double cone_scale, cone_offset;
+    bool shadow;
     enum hlh_light_kind kind;
     enum hlh_falloff falloff;
 };
@@ -177,6 +178,12 @@ struct hlr_prepared {
     double seconds;
 };
 
+/* Drawn over what is behind it, without depth. */
+static inline bool hlr_is_blended(const struct hlh_material *m)
+{
+    return m->alpha == HLH_ALPHA_BLEND || m->fence || m->decal;
+}
+
 static inline struct v3 transform3(const struct v3 m[3], struct v3 p)
 {
     return add3(add3(mul3(m[0], p.x), mul3(m[1], p.y)), mul3(m[2], p.z));
@@ -194,6 +201,13 @@ double hlr_now(void);            /* seconds, for the statistics only         */
 
 bool hlr_camera_make(struct hlr_camera *out, const struct hlh_camera *camera,
                      const struct hlr_options *options);
+/* Fill what follows from o, d. */
+void hlr_ray_shear(struct hlr_ray *ray);
+/* Whether anything that casts shadows is between `from`, a point of the
+ * triangle `own`, and `from + to`. d is finite and not zero; `endless`: as
+ * far as anything is (ray.c). */
+bool hlr_hidden(const struct hlr_prepared *p, struct v3 from, struct v3 to,
+                bool endless, const struct hlr_tri *own, bool brute);
 void hlr_camera_ray(struct hlr_ray *out, const struct hlr_camera *camera,
                     double x, double y);
 
@@ -209,6 +223,8 @@ struct hlr_surface {
     struct hlr_uv uv;
     double lambda, alpha;
     double rho[3], ks[3], emission[3], exponent;
+    enum hlh_brdf brdf;
+    const struct hlr_tri *tri;   /* that it lies on                          */
 };
 double hlr_alpha(const struct hlr_prepared *p, const struct hlr_ray *ray,
                  const struct hlr_hit *hit);
@@ -217,7 +233,8 @@ void hlr_surface(struct hlr_surface *out, const struct hlr_prepared *p,
                  const struct hlr_options *options);
 
 struct hlr_light_sum { double d[3], s[3]; uint32_t n; };
-void hlr_light_sum(struct hlr_light_sum *out, const struct hlr_lights *lights,
+void hlr_light_sum(struct hlr_light_sum *out, const struct hlr_prepared *p,
                    const struct hlr_surface *surface, struct v3 view,
-                   bool brute, struct hlr_scratch *scratch);
+                   const struct hlr_options *options,
+                   struct hlr_scratch *scratch);
 #endif

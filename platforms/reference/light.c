@@ -14,7 +14,8 @@ static bool can_light(const struct hlh_light *l)
 
 static struct hlr_light light_of(const struct hlh_light *l)
 {
-    struct hlr_light out = { .kind = l->kind, .falloff = l->falloff };
+    struct hlr_light out = { .kind = l->kind, .falloff = l->falloff,
+                             .shadow = l->shadow };
     double r = (double)l->radius;
     double inner = cos((double)l->inner_angle);
     double outer = cos((double)l->outer_angle);
@@ -106,22 +107,58 @@ static double attenuation(struct v3 *l, const struct hlr_light *light,
     return a;
 }
 
-static void add_light(struct hlr_light_sum *sum, const struct hlr_light *light,
-                      const struct hlr_surface *s, struct v3 view)
+struct point {
+    const struct hlr_prepared *p;
+    const struct hlr_surface *s;
+    const struct hlr_options *o;
+    struct v3 view;
+};
+
+static bool shadowed(const struct point *at, const struct hlr_light *light,
+                     struct v3 l)
 {
+    bool endless = light->kind == HLH_LIGHT_DIRECTIONAL;
+    struct v3 to = endless ? l : sub3(light->position, at->s->position);
+    return at->o->shadows && light->shadow &&
+           hlr_hidden(at->p, at->s->position, to, endless, at->s->tri,
+                      at->o->brute_force);
+}
+
+static double smoothstep(double x)
+{
+    double t = clamp(x, 0, 1);
+    return t * t * (3 - 2 * t);
+}
+
+/* N.L, or of skin lambSkinDusk (Engel, "Light Pre-Pass", appendix) with a
+ * roll-off of 0.2: light that entered beside the terminator is added. */
+static double diffuse_weight(enum hlh_brdf brdf, double nl)
+{
+    double lambert = nl > 0 ? nl : 0;
+    if (brdf != HLH_BRDF_SKIN)
+        return lambert;
+    double more = smoothstep((nl + 0.2) / 1.2) - smoothstep(nl);
+    return lambert + (more > 0 ? more : 0);
+}
+
+static void add_light(struct hlr_light_sum *sum, const struct hlr_light *light,
+                      const struct point *at)
+{
+    const struct hlr_surface *s = at->s;
     struct v3 l;
     double a = attenuation(&l, light, s->position);
     if (!(a > 0))
         return;
     sum->n++;
     double nl = dot3(s->normal, l);
-    if (!(nl > 0))
+    double weight = diffuse_weight(s->brdf, nl);
+    if (!(weight > 0) || shadowed(at, light, l))
         return;
-    double nh = dot3(s->normal, unit3(add3(l, view)));
-    double glint = nh > 0 ? pow(nh, s->exponent) : 0;
+    double nh = dot3(s->normal, unit3(add3(l, at->view)));
+    double glint = nl > 0 && nh > 0 ? nl * pow(nh, s->exponent) : 0;
     for (int k = 0; k < 3; k++) {
-        double e = light->color[k] * a * nl;
-        sum->d[k] += e;
+        double e = light->color[k] * a;
+        sum->d[k] += e * weight;
         sum->s[k] += e * glint;
     }
 }
@@ -166,15 +203,18 @@ static uint32_t lowest_bit(uint64_t x)
 
 /* The tree's lights are added in scene order, as without the tree: those that
  * it leaves out would have added nothing, so both ways give the same bits. */
-void hlr_light_sum(struct hlr_light_sum *out, const struct hlr_lights *lights,
+void hlr_light_sum(struct hlr_light_sum *out, const struct hlr_prepared *p,
                    const struct hlr_surface *surface, struct v3 view,
-                   bool brute, struct hlr_scratch *scratch)
+                   const struct hlr_options *options,
+                   struct hlr_scratch *scratch)
 {
+    const struct hlr_lights *lights = &p->lights;
+    const struct point at = { p, surface, options, view };
     uint64_t *reached = scratch->reached;
     memset(out, 0, sizeof *out);
-    if (brute) {
+    if (options->brute_force) {
         for (uint32_t i = 0; i < lights->n; i++)
-            add_light(out, &lights->light[i], surface, view);
+            add_light(out, &lights->light[i], &at);
         return;
     }
     for (uint32_t i = 0; i < lights->n_always; i++)
@@ -184,7 +224,7 @@ void hlr_light_sum(struct hlr_light_sum *out, const struct hlr_lights *lights,
     for (uint32_t w = 0; w < (lights->n + 63) / 64; w++) {
         for (uint64_t bits = reached[w]; bits; bits &= bits - 1) {
             uint32_t i = w * 64 + lowest_bit(bits);
-            add_light(out, &lights->light[i], surface, view);
+            add_light(out, &lights->light[i], &at);
         }
         reached[w] = 0;
     }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Zlib */
 /* Camera rays, the ray-triangle test, and the walk through the tree. */
+#include <float.h>
 #include <stdlib.h>
 #include <string.h>
 #include "platforms/reference/internal.h"
@@ -48,6 +49,11 @@ void hlr_camera_ray(struct hlr_ray *out, const struct hlr_camera *camera,
         .o_ = { camera->eye.x, camera->eye.y, camera->eye.z },
         .d_ = { d.x, d.y, d.z },
         .near = camera->near, .far = camera->far };
+    hlr_ray_shear(out);
+}
+
+void hlr_ray_shear(struct hlr_ray *out)
+{
     /* 1e-200 for 0: 0 times its inverse is 0, where 0 times Inf is NaN. */
     for (int k = 0; k < 3; k++) {
         out->inv[k] = 1 / (fabs(out->d_[k]) > 1e-200 ? out->d_[k] : 1e-200);
@@ -148,7 +154,7 @@ static void try_tri(struct hlr_hit *best, const struct hlr_prepared *p,
     const struct hlh_material *m = p->instances[tri->object].material;
     if (hit.back && !m->double_sided)
         return;
-    if (m->alpha == HLH_ALPHA_BLEND) {
+    if (hlr_is_blended(m)) {
         push_layer(scratch, &hit);
         return;
     }
@@ -210,6 +216,61 @@ static int nearer(const void *a, const void *b)
     if (p->t != q->t)
         return p->t < q->t ? -1 : 1;
     return p->tri->index > q->tri->index ? -1 : 1;
+}
+
+/* ---- shadows ------------------------------------------------------------ */
+
+static bool hides(const struct hlr_prepared *p, const struct hlr_ray *ray,
+                  const struct hlr_tri *tri, const struct hlr_tri *own)
+{
+    struct hlr_hit hit;
+    const struct hlh_material *m = p->instances[tri->object].material;
+    if (tri == own || hlr_is_blended(m) ||
+        p->scene->objects[tri->object].no_shadow || !tri_hit(&hit, ray, tri))
+        return false;
+    return m->alpha != HLH_ALPHA_MASK ||
+           hlr_alpha(p, ray, &hit) >= (double)m->alpha_cutoff;
+}
+
+static bool walk_hidden(const struct hlr_prepared *p,
+                        const struct hlr_ray *ray, const struct hlr_tri *own)
+{
+    uint32_t stack[HLR_BVH_STACK], n = 0;
+    if (p->tree.n_nodes)
+        stack[n++] = 0;
+    while (n > 0) {
+        const struct hlr_node *node = &p->tree.nodes[stack[--n]];
+        if (!(box_entry(ray, &node->box) <= ray->far))
+            continue;
+        for (uint32_t i = 0; i < node->count; i++)
+            if (hides(p, ray, &p->tris[node->first + i], own))
+                return true;
+        if (!node->count) {
+            stack[n++] = node->first;
+            stack[n++] = node->first + 1;
+        }
+    }
+    return false;
+}
+
+/* d is made unit, so that near is metres. No change of d with the pixel:
+ * masks are sampled at level 0. */
+bool hlr_hidden(const struct hlr_prepared *p, struct v3 from, struct v3 to,
+                bool endless, const struct hlr_tri *own, bool brute)
+{
+    double distance = sqrt(dot3(to, to));
+    double most = fmax(fabs(from.x), fmax(fabs(from.y), fabs(from.z)));
+    struct v3 d = mul3(to, 1 / distance);
+    struct hlr_ray ray = { .o = from, .d = d,
+        .o_ = { from.x, from.y, from.z }, .d_ = { d.x, d.y, d.z },
+        .near = 1e-7 * most, .far = endless ? DBL_MAX : distance };
+    hlr_ray_shear(&ray);
+    if (!brute)
+        return walk_hidden(p, &ray, own);
+    for (uint32_t i = 0; i < p->n_tris; i++)
+        if (hides(p, &ray, &p->tris[i], own))
+            return true;
+    return false;
 }
 
 void hlr_trace(struct hlr_hit *out, const struct hlr_prepared *p,

@@ -45,8 +45,8 @@ static void shade(double out[3], struct hlr_surface *s,
 {
     const struct hlr_prepared *p = job->p;
     hlr_surface(s, p, ray, hit, job->o);
-    hlr_light_sum(sum, &p->lights, s, unit3(sub3(ray->o, s->position)),
-                  job->o->brute_force, scratch);
+    hlr_light_sum(sum, p, s, unit3(sub3(ray->o, s->position)), job->o,
+                  scratch);
     for (int k = 0; k < 3; k++)
         out[k] = s->emission[k] +
                  s->rho[k] * ((double)p->scene->ambient[k] + sum->d[k]) +

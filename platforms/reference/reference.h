@@ -30,6 +30,17 @@
  *   mirrored node, so that a mirrored bump is the mirror image of the bump.
  *   Where T vanishes, the interpolated normal stays.
  * - A directional light's radius is not read.
+ * - Fences (hlh_material.fence) and decals are blended surfaces. A decal's
+ *   normal is that of its own layer, not mixed into the one below.
+ * - Shadows (options.shadows, lights with hlh_light.shadow): from each point
+ *   one ray to the light; what is opaque, or masked and there by its alpha
+ *   test (the texture's level 0), hides it from either side; what is blended,
+ *   a fence, a decal or a no_shadow object does not. The triangle that the
+ *   point lies on never does, nor what is nearer than 1e-7 of the largest of
+ *   the point's coordinates: less than a float's step, so that a closed
+ *   body's other faces count right up to their edges.
+ * - HLH_BRDF_SKIN: in the diffuse term alone max(N.L, 0) becomes that plus
+ *   max(0, smoothstep(-0.2, 1, N.L) - smoothstep(0, 1, N.L)).
  *
  * The same input gives the same bits for any number of threads. */
 #include <stdbool.h>
@@ -47,6 +58,7 @@ struct hlr_options {
     bool no_specular;            /* ks = 0 everywhere, as --no-specular      */
     bool ids_of_blended;         /* ids name the first surface of any kind;
                                   * false = the first that writes depth      */
+    bool shadows;                /* lights with hlh_light.shadow cast them   */
     bool brute_force;            /* try every triangle and every light, for
                                   * the test of the trees: the same picture  */
     double near, far;            /* view depth that is drawn; 0 = no limit   */

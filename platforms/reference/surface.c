@@ -186,7 +186,9 @@ void hlr_surface(struct hlr_surface *out, const struct hlr_prepared *p,
     memset(out, 0, sizeof *out);
     uv_of(&out->uv, &c, ray, hit);
     base_of(base, p, &c, hit, &out->uv);
-    out->alpha = c.material->alpha == HLH_ALPHA_BLEND ? base[3] : 1;
+    out->alpha = hlr_is_blended(c.material) ? base[3] : 1;
+    out->brdf = c.material->brdf;
+    out->tri = hit->tri;
     out->position = mix3(hit->b, hit->tri->p[0], hit->tri->p[1],
                          hit->tri->p[2]);
     out->normal = normal_of(p, &c, hit, &out->uv, options->normal_maps);

@@ -225,6 +225,7 @@ static void read_timings(struct hlvk *v, struct hlvk_frame *f)
     }
     for (uint32_t i = 0; i < f->n_passes; i++) {
         uint64_t ticks = (v->stamps[i + 1] - v->stamps[i]) & v->tick_mask;
+        v->timings[i].fragments = v->timings[i].blended = 0;
         v->timings[i].label = f->labels[i];
         v->timings[i].ms = (double)ticks * v->tick_ms;
     }

@@ -48,7 +48,8 @@
 #define HL_SPEC_KINDS 2     /* 0 points only, 1 spots and directional too    */
 #define HL_SPEC_BATCH 3     /* lights a draw, 1..HL_BATCH_MAX                */
 #define HL_SPEC_DSF 4       /* HL_DSF_*                                      */
-#define HL_SPEC_MASK 5      /* 1: discard where alpha < cutoff               */
+#define HL_SPEC_MASK 5      /* 1: discard where alpha < cutoff; 2: where
+                             * < HL_ALPHA_VISIBLE                            */
 #define HL_SPEC_TEXTURES 6  /* HL_TEXTURED_* bits                            */
 #define HL_SPEC_BASE 7      /* forward: 1 adds emission and ambient          */
 #define HL_SPEC_TWO_SIDED 8 /* 1: a visible back face turns its normal over  */
@@ -78,13 +79,18 @@
 #define HL_SPEC_BRDFS 28         /* 1: the exponent channel is a pair, and has
                                   * the BRDF as its second number            */
 #define HL_SPEC_MAP_SIZE 29      /* shadow map: texels a side, float         */
-#define HL_SPEC_MAP_FACES 30     /* shadow map: 1, or 6 of a point light     */
+#define HL_SPEC_MAP_FACES 30     /* shadow map: 1, or 6 of a point light; and
+                                  * HL_MAP_BARG                              */
 #define HL_SPEC_DECAL 31         /* geometry pass: 1 writes nothing but the
                                   * normal, with the surface's alpha         */
+
+/* Half a step of 8-bit alpha: what blends to nothing that can be seen. */
+#define HL_ALPHA_VISIBLE (0.5f / 255.0f)
 
 /* How a depth target is sampled. */
 #define HL_DEPTH_READ_FLOAT 0
 #define HL_DEPTH_READ_BARG 1 /* three bytes of depth in rgb, high first      */
+#define HL_MAP_BARG 8       /* HL_SPEC_MAP_FACES: the map is read so         */
 
 /* L-buffers are sampled as raw bits (R32, RG32 or RGBA32 UINT), since one
  * gather of 32-bit words costs less than four fetches of texels. */
@@ -101,6 +107,7 @@
 #define HL_DSF_OFF 0        /* plain bilinear                                */
 #define HL_DSF_SLOPE 1
 #define HL_DSF_CONSTANT 2   /* the paper's threshold, for comparison         */
+#define HL_DSF_DARK 4       /* a plan for no lights: nothing is read         */
 #define HL_DSF_EXACT 3      /* L-buffer as large as the frame: one fetch     */
 #define HL_TEXTURED_BASE 1
 #define HL_TEXTURED_METAL_ROUGH 2
@@ -193,6 +200,17 @@ enum { HL_LIGHTS_BYTES = HL_BATCH_MAX * HL_LIGHT_VEC4S * 16 };
 struct hl_volume_block {
     hl_mat4 clip;       /* model to clip                                     */
     hl_vec4 light;      /* in model space, as hl_shadow_light gives it       */
+};
+
+/* Of the light pass with HL_SHADOW_MAP (shadow.glsl lays it out the same);
+ * shaders/shared/shadow.h says what the numbers do. */
+struct hl_shadow_block {
+    hl_mat4 light;      /* view to light space, rigid, metres                */
+    hl_vec4 map;        /* texels a unit of slope (parallel: a metre), 1 over
+                         * that, 1 (-1 where near is 1), HL_SHADOW_*         */
+    hl_vec4 depth;      /* stored depth = x / c + y (parallel: x c + y); least
+                         * c; 0                                              */
+    hl_vec4 error;      /* of view depth z: x z^2 + y z, metres              */
 };
 
 /* Of the geometry pass with HL_MOTION. */

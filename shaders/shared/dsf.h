@@ -27,6 +27,13 @@ HL_FN float hl_dsf_accept(float tap_z, float tap_id, float z, float id,
            ? 1.0f : 0.0f;
 }
 
+/* Half of one id, in codes, for hl_dsf_accept: region 0 takes taps of any
+ * region, since decals lie on surfaces of others. */
+HL_FN float hl_dsf_half_step(float id)
+{
+    return id == 0.0f ? 65536.0f : 0.5f;
+}
+
 /* Bilinear weights of taps 00, 10, 01, 11 at fraction f. */
 HL_FN hl_vec4 hl_bilinear(hl_vec2 f)
 {
@@ -62,5 +69,82 @@ HL_FN hl_vec4 hl_dsf_weights(hl_vec4 b, hl_vec4 a)
     if ((b.z + 1.0f) * a.z == best)
         return hl_v4(0.0f, 0.0f, 1.0f, 0.0f);
     return hl_v4(0.0f, 0.0f, 0.0f, 1.0f);
+}
+
+/* ---- samples of a stipple pattern (K 4) ---------------------------------- */
+
+/* Radius of the cone, in distances between samples of a pattern. From 1 on
+ * taps enter and leave with a jump; below 0.71 the middle of a cell has no
+ * tap at all. */
+#define HL_CONE_RADIUS 1.0f
+
+HL_FN float hl_cone(float x, float y)
+{
+    return hl_max(1.0f - hl_sqrt(x * x + y * y) * (1.0f / HL_CONE_RADIUS),
+                  0.0f);
+}
+
+/* Cone weights of taps 00, 10, 01, 11 at fraction f; their sum is no 1. */
+HL_FN hl_vec4 hl_cones(hl_vec2 f)
+{
+    float gx = 1.0f - f.x;
+    float gy = 1.0f - f.y;
+    return hl_v4(hl_cone(f.x, f.y), hl_cone(gx, f.y), hl_cone(f.x, gy),
+                 hl_cone(gx, gy));
+}
+
+/* As hl_dsf_weights. Outside of all accepted cones, and where none is
+ * accepted, bilinear weights serve. */
+HL_FN hl_vec4 hl_stipple_weights(hl_vec2 f, hl_vec4 a, bool cone)
+{
+    hl_vec4 c = hl_cones(f);
+    float sum = c.x * a.x + c.y * a.y + c.z * a.z + c.w * a.w;
+    if (cone && sum > HL_DSF_NOTHING)
+        return hl_dsf_weights(c, a);
+    return hl_dsf_weights(hl_bilinear(f), a);
+}
+
+/* ---- where all four are rejected ----------------------------------------- */
+
+/* A surface narrower than a texel may have no sample among the four, but one
+ * a little farther: the twelve around them are looked at, and the nearest
+ * that is accepted is taken. They lie within two texels of the pixel on
+ * either axis. Without one it is the one of the four that is nearest in depth,
+ * of the same region before others: light of a surface at another depth is
+ * light of another place. */
+
+/* What no texel has. */
+#define HL_FILL_NONE 1e9f
+
+/* Squared distance, in texels, of the texel (x, y), each -1, 0, 1 or 2 from
+ * tap 00, to the pixel at fraction f; NONE for the four themselves. */
+HL_FN float hl_fill_distance(float x, float y, hl_vec2 f)
+{
+    float dx = x - f.x;
+    float dy = y - f.y;
+    bool inner = x >= 0.0f && x <= 1.0f && y >= 0.0f && y <= 1.0f;
+    return inner ? HL_FILL_NONE : dx * dx + dy * dy;
+}
+
+/* How little a rejected tap is of the surface: its distance in depth, behind
+ * all of the same region where it is of another. far: the largest depth. */
+HL_FN float hl_fill_miss(float tap_z, float tap_id, float z, float id,
+                         float half_step, float far)
+{
+    float gap = hl_abs(tap_z - z);
+    return hl_abs(tap_id - id) < half_step ? gap : gap + 2.0f * far;
+}
+
+/* Of misses of taps 00, 10, 01, 11 the least, as x and y of its tap. */
+HL_FN hl_vec2 hl_fill_tap(hl_vec4 miss)
+{
+    float least = hl_min(hl_min(miss.x, miss.y), hl_min(miss.z, miss.w));
+    if (miss.x == least)
+        return hl_v2(0.0f, 0.0f);
+    if (miss.y == least)
+        return hl_v2(1.0f, 0.0f);
+    if (miss.z == least)
+        return hl_v2(0.0f, 1.0f);
+    return hl_v2(1.0f, 1.0f);
 }
 #endif

@@ -56,6 +56,25 @@ HL_FN float hl_tangent_w_sign(float w) { return w < 0.0f ? -1.0f : 1.0f; }
 HL_FN float hl_exponent_encode(float n) { return hl_log2(n) * 0.125f; }
 HL_FN float hl_exponent_decode(float e) { return hl_exp2(e * 8.0f); }
 
+/* A BRDF's index, 0..255, as the second number of a pair, and back: exact,
+ * since pairs keep numbers within 2^-15. */
+HL_FN float hl_brdf_encode(float brdf) { return brdf * (1.0f / 255.0f); }
+HL_FN float hl_brdf_decode(float y) { return hl_floor(y * 255.0f + 0.5f); }
+
+/* Screen motion along one axis, a difference of clip x / w or y / w (2 is
+ * the whole screen), cut to -1..1, as one number of a pair, and back. No
+ * motion comes back as exactly 0, whichever of UNORM16's two codes beside 1 / 2
+ * was stored: so the error is up to 2 / 65535 there, else half of that. */
+HL_FN float hl_motion_encode(float m)
+{
+    return 0.5f * hl_min(hl_max(m, -1.0f), 1.0f) + 0.5f;
+}
+HL_FN float hl_motion_decode(float x)
+{
+    float m = x * 2.0f - 1.0f;
+    return hl_abs(m) < 2e-5f ? 0.0f : m;
+}
+
 /* 16 bits in two bytes and back, codes 0..65535 as floats; exact. */
 HL_FN hl_vec2 hl_split16(float code)
 {

@@ -26,6 +26,26 @@ HL_FN float hl_spot(float cos_angle, float scale, float offset)
     return t * t;
 }
 
+/* Diffuse weight of skin (core/scene.h HL_BRDF_SKIN): max(N.L, 0) and, beside
+ * the terminator, light that entered elsewhere: lambSkinDusk of Engel, "Light
+ * Pre-Pass", appendix:
+ *   max(0, smoothstep(-r, 1, N.L) - smoothstep(0, 1, N.L)).
+ * The roll-off r is fixed, not a material's, since the light pass knows of a
+ * texel only which BRDF it has. 0.2: the dark side glows to 11.5 degrees past
+ * the terminator, by 0.074 at it. Within 0..1 for N.L within -1..1, so bounds
+ * of summed light hold; 1 at 1, 0 from -r down. */
+#define HL_SKIN_ROLL_OFF 0.2f
+#define HL_BRDF_SKIN_INDEX 1 /* enum hl_brdf, for stages                     */
+HL_FN float hl_diffuse_skin(float ndl)
+{
+    float a = hl_clamp01((ndl + HL_SKIN_ROLL_OFF) *
+                         (1.0f / (1.0f + HL_SKIN_ROLL_OFF)));
+    float b = hl_clamp01(ndl);
+    float wide = a * a * (3.0f - 2.0f * a);
+    float narrow = b * b * (3.0f - 2.0f * b);
+    return hl_max(ndl, 0.0f) + hl_max(wide - narrow, 0.0f);
+}
+
 /* max(N.H, 0)^n. */
 HL_FN float hl_specular(float ndh, float n)
 {
