@@ -188,9 +188,10 @@ test: deps
 	@sh tests/run.sh $(B)
 check: all
 	@sh tests/check.sh $(B)
-bench: all $(B)/tests/bench_light
+bench: all $(B)/tests/bench_light $(B)/tests/bench_stipple
 	@sh tests/bench.sh $(B)/halflight fig8
 	@$(B)/tests/bench_light
+	@$(B)/tests/bench_stipple
 docs: tool $(B)/docs-tables
 	@sh docs/make-tables.sh $(B)/halflight $(B)/docs-tables
 $(B)/docs-tables: $(B)/obj/docs/tables.o

@@ -84,7 +84,8 @@ enum hl_inspect {
                               * evaluations (frame pixels, or L-buffer
                               * texels for the inferred pipeline); not above
                               * 65,535, or 255, where nothing with more
-                              * codes blends                                 */
+                              * codes blends; of plans with light lists
+                              * without lights that have shadows             */
     HL_INSPECT_REJECTS,      /* uint8 a frame pixel: rejected DSF taps + 1,
                               * 0 = background; inferred pipeline only       */
     HL_INSPECT_STIPPLE       /* uint8 an L-buffer texel: 0 background, 1 opaque,

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Zlib */
-/* Pictures of the inside: ids, lights a pixel, rejected taps. */
+/* Pictures of the inside: ids, lights a pixel, rejected taps, stipple. */
 #include <string.h>
 #include "core/renderer.h"
 
+/* Of the light pass? Then without meshes, and without depth. */
 static bool on_light_buffer(const struct hl_renderer *r, enum hl_inspect what)
 {
     return what == HL_INSPECT_LIGHTS &&
@@ -12,7 +13,7 @@ static bool on_light_buffer(const struct hl_renderer *r, enum hl_inspect what)
 void hl_inspect_size(const struct hl_renderer *r, enum hl_inspect what,
                      uint32_t *width, uint32_t *height)
 {
-    bool light = on_light_buffer(r, what);
+    bool light = on_light_buffer(r, what) || what == HL_INSPECT_STIPPLE;
     *width = light ? r->plan.light_width : r->plan.width;
     *height = light ? r->plan.light_height : r->plan.height;
 }
@@ -28,7 +29,8 @@ static enum hl_format format_of(const struct hl_renderer *r,
                                 enum hl_inspect what)
 {
     return what == HL_INSPECT_IDS ? HL_FORMAT_R32_UINT
-           : what == HL_INSPECT_REJECTS ? HL_FORMAT_R8_UNORM
+           : what == HL_INSPECT_REJECTS || what == HL_INSPECT_STIPPLE
+             ? HL_FORMAT_R8_UNORM
            : by_lists(r) ? HL_FORMAT_R32_FLOAT : r->count_format;
 }
 
@@ -83,7 +85,9 @@ static enum hl_result make_targets(struct hl_renderer *r,
     c.format = format_of(r, what);
     c.usage = HL_TEX_TARGET | HL_TEX_READBACK;
     d.label = "inspect depth";
-    d.format = hl_plan_target(&r->plan, HL_ROLE_DEPTH)->format;
+    d.format = hl_plan_target(&r->plan, what == HL_INSPECT_STIPPLE
+                                        ? HL_ROLE_LIGHT_DEPTH
+                                        : HL_ROLE_DEPTH)->format;
     d.usage = HL_TEX_TARGET;
     place_in_edram(r, &c, &d);
     hl_tex_destroy(r->device, &r->inspect_color);
@@ -94,11 +98,18 @@ static enum hl_result make_targets(struct hl_renderer *r,
     return e;
 }
 
+static bool is_drawn(const struct hl_renderer *r, uint32_t surface, int kind)
+{
+    enum hl_class c = hl_surface_class(r, surface);
+    return c == HL_CLASS_OPAQUE ||
+           (c == HL_CLASS_BLENDED && kind == PROG_STIPPLE_ID);
+}
+
 static enum hl_result need_program(struct hl_renderer *r, int kind)
 {
     for (uint32_t i = 0; i < r->n_surfaces; i++) {
         hl_prog *p = &r->prog[i][kind];
-        enum hl_result e = p->id || hl_surface_class(r, i) != HL_CLASS_OPAQUE
+        enum hl_result e = p->id || !is_drawn(r, i, kind)
                            ? HL_OK : hl_surface_program(r, i, kind, p);
         if (e != HL_OK)
             return e;
@@ -113,6 +124,8 @@ static enum hl_result need_programs(struct hl_renderer *r,
         return need_program(r, PROG_ID);
     if (what == HL_INSPECT_REJECTS)
         return need_program(r, PROG_REJECT);
+    if (what == HL_INSPECT_STIPPLE)
+        return need_program(r, PROG_STIPPLE_ID);
     if (!on_light_buffer(r, what)) {
         enum hl_result e = need_program(r, PROG_COUNT_BASE);
         return e == HL_OK ? need_program(r, PROG_COUNT_MORE) : e;
@@ -124,6 +137,16 @@ static enum hl_result need_programs(struct hl_renderer *r,
                                         : HL_SHADER_COUNT_FRAG,
                                format_of(r, what),
                                lists ? HL_BLEND_OFF : HL_BLEND_ADD, 1, p);
+}
+
+/* The geometry pass once more. */
+static void emit_stipple(struct hl_renderer *r, const struct hl_frame *f)
+{
+    for (uint32_t i = 0; i < r->n_opaque; i++)
+        hl_draw_mesh(r, f, i, PROG_STIPPLE_ID);
+    for (uint32_t i = r->n_decals; i < r->n_visible; i++)
+        if (r->visible[i].pattern != HL_STIPPLE_NONE)
+            hl_draw_mesh(r, f, i, PROG_STIPPLE_ID);
 }
 
 static void emit(struct hl_renderer *r, const struct hl_frame *f,
@@ -138,6 +161,10 @@ static void emit(struct hl_renderer *r, const struct hl_frame *f,
         r->counting = false;
         return;
     }
+    if (what == HL_INSPECT_STIPPLE) {
+        emit_stipple(r, f);
+        return;
+    }
     for (uint32_t i = 0; i < r->n_opaque; i++)
         hl_draw_mesh(r, f, i, what == HL_INSPECT_IDS ? PROG_ID : PROG_REJECT);
 }
@@ -146,11 +173,13 @@ enum hl_result hl_frame_inspect(struct hl_renderer *r,
                                 const struct hl_frame *f,
                                 enum hl_inspect what, void *out, size_t bytes)
 {
-    if (!r || !f || !out || (unsigned)what > HL_INSPECT_REJECTS)
+    if (!r || !f || !out || (unsigned)what > HL_INSPECT_STIPPLE)
         return HL_ERR_INVALID;
     bool inferred = r->plan.pipeline == HL_PIPELINE_INFERRED;
     if (what == HL_INSPECT_REJECTS &&
         (!inferred || r->plan.dsf == HL_DSF_DARK))
+        return HL_ERR_UNSUPPORTED;
+    if (what == HL_INSPECT_STIPPLE && !r->plan.stipple)
         return HL_ERR_UNSUPPORTED;
     const float zero[4] = { 0, 0, 0, 0 };
     r->stippling.again = true;

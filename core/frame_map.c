@@ -14,6 +14,12 @@ static bool has_maps(const struct hl_plan *p)
            p->shadows == HL_SHADOWS_MAPS;
 }
 
+static uint32_t map_faces(const struct hl_plan *p)
+{
+    const struct hl_plan_target *t = hl_plan_target(p, HL_ROLE_SHADOW_MAP);
+    return t->width > p->shadow_size ? 6 : 1;
+}
+
 void hl_maps_carve(struct hl_carve *c, struct hl_renderer *r,
                    const struct hl_renderer_desc *d)
 {
@@ -41,16 +47,16 @@ enum hl_result hl_maps_make(struct hl_renderer *r)
         if (casts(r, i))
             e = hl_surface_program(r, i, PROG_SHADOW_DEPTH,
                                    &r->prog[i][PROG_SHADOW_DEPTH]);
-    if (e == HL_OK)
-        e = hl_screen_program(r, HL_SHADER_LIGHT_MAP_FRAG,
-                              hl_plan_target(&r->plan, HL_ROLE_LIGHT)->format,
-                              HL_BLEND_ADD, 1, &r->maps.light);
+    for (uint32_t k = HL_MAP_NONE; k <= HL_MAP_PARALLEL && e == HL_OK; k++)
+        if (k != HL_MAP_POINT || map_faces(&r->plan) == 6)
+            e = hl_map_program(r, k, &r->maps.light[k]);
     return e;
 }
 
 void hl_maps_destroy(struct hl_renderer *r)
 {
-    hl_prog_destroy(r->device, &r->maps.light);
+    for (int k = 0; k < 4; k++)
+        hl_prog_destroy(r->device, &r->maps.light[k]);
 }
 
 /* ---- what casts --------------------------------------------------------- */
@@ -200,7 +206,7 @@ static void add_light(struct hl_renderer *r, const struct hl_frame *f,
     hl_shadow_block_write(&b, m, &f->camera, e);
     hl_pass_begin(r, "shadowed light");
     hl_pass_color(r, r->target[HL_ROLE_LIGHT], HL_LOAD_KEEP, NULL);
-    struct hl_draw *d = hl_draw_screen(r, r->maps.light, rect);
+    struct hl_draw *d = hl_draw_screen(r, r->maps.light[m->kind], rect);
     d->n_textures = HL_TEX_SHADOW + 1;
     hl_bind_uniform(r, d, HL_SLOT_SHADOW,
                     hl_arena_put(&r->arena, &b, sizeof b), sizeof b);
@@ -221,7 +227,7 @@ static void draw_light(struct hl_renderer *r, const struct hl_frame *f,
     hl_shadow_fit(&m, l, t, scene);
     uint32_t n = count_casters(r, &m);
     if (n == 0)
-        m.kind = HL_SHADOW_NONE;
+        m.kind = HL_MAP_NONE;
     else
         draw_map(r, f, &m);
     add_light(r, f, i, &rect, &m);
@@ -235,9 +241,7 @@ static void draw_light(struct hl_renderer *r, const struct hl_frame *f,
 void hl_maps_shadowed(struct hl_renderer *r, const struct hl_frame *f)
 {
     const struct hl_plan *p = &r->plan;
-    const struct hl_plan_target *map = hl_plan_target(p, HL_ROLE_SHADOW_MAP);
-    struct hl_shadow_target t = { p->shadow_size,
-                                  map->width > p->shadow_size ? 6 : 1,
+    struct hl_shadow_target t = { p->shadow_size, map_faces(p),
                                   p->reversed_depth,
                                   fixed_bits(p, HL_ROLE_SHADOW_MAP) };
     struct hl_shadow_scene scene;

@@ -57,7 +57,11 @@ static size_t frame_bytes_of(const struct hl_renderer_desc *d)
     size_t lights = lights_of(d), items = d->max_items;
     size_t pairs = lights + 16 > 0x4000000 / 64 / items
                    ? 0x4000000 : items * (lights + 16) * 64;
-    return 0x400000 + least(items, 0x100000) * 768 + pairs + tile_bytes_of(d);
+    /* A matrix for every item on 24 shadow maps. */
+    size_t maps = d->plan->shadows == HL_SHADOWS_MAPS
+                  ? least(items * 24, 0x40000) * 256 : 0;
+    return 0x400000 + least(items, 0x100000) * 768 + pairs + maps +
+           tile_bytes_of(d);
 }
 
 static size_t list_bytes_of(const struct hl_renderer_desc *d)

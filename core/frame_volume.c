@@ -266,6 +266,8 @@ static void draw_shadow(struct hl_renderer *r, const struct hl_frame *f,
     struct hl_volumes *v = &r->volumes;
     struct hl_shadow_counts n;
     unsigned parts = HL_SHADOW_CLOSED;
+    if (r->result != HL_OK)
+        return;
     if (r->surfaces[it->surface].two_sided)
         parts |= HL_SHADOW_TWO_SIDED;
     enum hl_result e = write_volume(v, it, light, parts, &n);

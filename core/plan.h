@@ -131,7 +131,7 @@ struct hl_plan_pass {
     uint32_t lights_a_draw;        /* 0: none                                */
 };
 
-enum { HL_PLAN_TARGETS = 12, HL_PLAN_PASSES = 10, HL_PLAN_REASONS = 48 };
+enum { HL_PLAN_TARGETS = 12, HL_PLAN_PASSES = 10, HL_PLAN_REASONS = 64 };
 
 enum hl_decals {                   /* how decals change normals              */
     HL_DECALS_NONE = 0,

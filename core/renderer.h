@@ -75,7 +75,7 @@ struct hl_caster {
                                         * there yet                          */
 };
 struct hl_maps {
-    hl_prog light;           /* one light through its map                    */
+    hl_prog light[4];        /* one light through its maps, by HL_MAP_*      */
     struct hl_caster *casters;   /* n of this frame, whether seen or not     */
     uint32_t n;
     struct hl_texture_binding (*textures)[HL_TEX_MESH_COUNT]; /* of each     */
@@ -156,6 +156,9 @@ enum hl_result hl_light_stencil_program(struct hl_renderer *,
                                         hl_prog *out);
 /* Half a texel of the L-buffer, where vertex stages shift by it. */
 void hl_shift_specs(const struct hl_plan *, struct hl_prog_desc *);
+/* One light through shadow maps of a kind, HL_MAP_*; the plan has maps. */
+enum hl_result hl_map_program(struct hl_renderer *, uint32_t kind,
+                              hl_prog *out);
 
 /* All that frames draw with; those of hl_frame_inspect come on first use. */
 enum hl_result hl_programs_make(struct hl_renderer *);

@@ -66,9 +66,9 @@ struct hl_surface {
     uint32_t textures;       /* HL_TEXTURED_* bits that items bind           */
     bool vertex_color;       /* the layout has HL_ATTR_COLOR                 */
     bool masked;             /* alpha test                                   */
-    /* Drawn last, sorted, over. With masked: the alpha test decides where
-     * the geometry pass writes, and all of the surface is blended (K 6: fences
-     * and foliage). */
+    /* Drawn last, sorted, over. With masked (K 6: fences and foliage): all of
+     * the surface is blended, the geometry pass writes where it is not
+     * invisible, and the alpha test decides what casts shadows. */
     bool blended;
     /* Lies on other surfaces, in front of them by a little: changes their
      * normals by its alpha, and is blended over their colour. Implies no depth

@@ -137,7 +137,7 @@ static void fit_point(struct hl_shadow_map *m, const struct hl_light *l)
 {
     if (m->target.faces != 6)
         return;
-    m->kind = HL_SHADOW_SIX;
+    m->kind = HL_MAP_POINT;
     for (int i = 0; i < 3; i++)
         m->axis[i][i] = 1;
     m->scale = half_map(&m->target);
@@ -147,7 +147,7 @@ static void fit_point(struct hl_shadow_map *m, const struct hl_light *l)
 static void fit_spot(struct hl_shadow_map *m, const struct hl_light *l)
 {
     double t = hl_exact_tan((double)l->outer);
-    m->kind = HL_SHADOW_CONE;
+    m->kind = HL_MAP_CONE;
     look_along(m, l->direction);
     m->scale = half_map(&m->target) / (t > 1e-3 ? t : 1e-3);
     from_light(m, l);
@@ -169,7 +169,7 @@ static void span_parallel(struct hl_shadow_map *m,
 static void fit_parallel(struct hl_shadow_map *m, const struct hl_light *l,
                          const struct hl_shadow_scene *s)
 {
-    m->kind = HL_SHADOW_PARALLEL;
+    m->kind = HL_MAP_PARALLEL;
     look_along(m, l->direction);
     /* Half a texel to either side for the step to whole ones. */
     m->scale = (half_map(&m->target) - 0.5) /
@@ -186,7 +186,7 @@ void hl_shadow_fit(struct hl_shadow_map *m, const struct hl_light *l,
 {
     memset(m, 0, sizeof *m);
     m->target = *t;
-    m->kind = HL_SHADOW_NONE;
+    m->kind = HL_MAP_NONE;
     if (l->kind == HL_DIRECTIONAL)
         fit_parallel(m, l, scene);
     else if (l->kind == HL_SPOT && l->outer < HL_SHADOW_WIDE)
@@ -197,7 +197,7 @@ void hl_shadow_fit(struct hl_shadow_map *m, const struct hl_light *l,
 
 uint32_t hl_shadow_faces(const struct hl_shadow_map *m)
 {
-    return m->kind == HL_SHADOW_NONE ? 0 : m->kind == HL_SHADOW_SIX ? 6 : 1;
+    return m->kind == HL_MAP_NONE ? 0 : m->kind == HL_MAP_POINT ? 6 : 1;
 }
 
 /* ---- faces -------------------------------------------------------------- */
@@ -209,8 +209,8 @@ struct face { double axis[3][3], origin[3]; };
 static void face_of(struct face *f, const struct hl_shadow_map *m,
                     uint32_t face)
 {
-    int first = m->kind == HL_SHADOW_SIX ? (int)(face / 2 + 1) % 3 : 0;
-    double sign = m->kind == HL_SHADOW_SIX && face % 2 ? -1 : 1;
+    int first = m->kind == HL_MAP_POINT ? (int)(face / 2 + 1) % 3 : 0;
+    double sign = m->kind == HL_MAP_POINT && face % 2 ? -1 : 1;
     for (int i = 0; i < 3; i++) {
         int k = (first + i) % 3;
         double s = i == 1 ? 1 : sign;
@@ -232,7 +232,7 @@ bool hl_shadow_touches(const struct hl_shadow_map *m, uint32_t face,
 {
     struct face f;
     face_of(&f, m, face);
-    bool parallel = m->kind == HL_SHADOW_PARALLEL;
+    bool parallel = m->kind == HL_MAP_PARALLEL;
     double e = edge(m), back[3];
     for (int i = 0; i < 3; i++)
         back[i] = -f.axis[2][i];
@@ -255,7 +255,7 @@ static void depth_terms(const struct hl_shadow_map *m, double *x, double *y)
 {
     double n = m->near, f = m->far, d = f - n;
     bool r = m->target.reversed;
-    if (m->kind == HL_SHADOW_PARALLEL) {
+    if (m->kind == HL_MAP_PARALLEL) {
         *x = (r ? -1 : 1) / d;
         *y = (r ? f : -n) / d;
     } else {
@@ -284,7 +284,7 @@ void hl_shadow_clip(float out[16], const struct hl_shadow_map *m,
     double middle[2] = { (face % columns(m) + 0.5) * side,
                          (face / columns(m) + 0.5) * side };
     double size[2] = { columns(m) * side, rows(m) * side };
-    bool parallel = m->kind == HL_SHADOW_PARALLEL;
+    bool parallel = m->kind == HL_MAP_PARALLEL;
     face_of(&f, m, face);
     depth_terms(m, &x, &y);
     for (int i = 0; i < 3; i++)
@@ -360,12 +360,12 @@ void hl_shadow_block_write(struct hl_shadow_block *out,
 {
     double x = 0, y = 0;
     memset(out, 0, sizeof *out);
-    if (m->kind == HL_SHADOW_NONE)
+    if (m->kind == HL_MAP_NONE)
         return;
     depth_terms(m, &x, &y);
     view_to_light(&out->light, m, cam->view);
     out->map = hl_v4((float)m->scale, (float)(1 / m->scale),
-                     m->target.reversed ? -1.0f : 1.0f, m->kind);
+                     m->target.reversed ? -1.0f : 1.0f, 0);
     out->depth = hl_v4((float)x, (float)y, (float)m->near, 0);
     out->error = hl_v4(e.x, e.y, 0, 0);
 }

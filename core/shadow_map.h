@@ -35,7 +35,7 @@ struct hl_shadow_scene {
 
 struct hl_shadow_map {
     struct hl_shadow_target target;
-    float kind;              /* HL_SHADOW_* of shadow.h                      */
+    uint32_t kind;           /* HL_MAP_NONE .. HL_MAP_PARALLEL               */
     double axis[3][3];       /* a, b, c in the world, unit, right-handed     */
     double origin[3];        /* of light space, along those axes             */
     double near, far;        /* of c, metres                                 */
@@ -50,7 +50,7 @@ void hl_shadow_frustum(struct hl_shadow_sphere *out, const struct hl_camera *,
  * that it seldom changes as things move. */
 void hl_shadow_around(struct hl_shadow_sphere *out, const struct hl_box *);
 
-/* Maps of a light that hl_light_check finds good. kind HL_SHADOW_NONE: it can
+/* Maps of a light that hl_light_check finds good. kind HL_MAP_NONE: it can
  * have none here, and lights all. `scene` is read for directional lights. */
 void hl_shadow_fit(struct hl_shadow_map *out, const struct hl_light *,
                    const struct hl_shadow_target *,

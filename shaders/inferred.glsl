@@ -275,11 +275,16 @@ ivec2 hl_texel(hl_lattice g, vec2 i)
     return ivec2(min(s * g.side + g.cell, last));
 }
 
-hl_dsf_taps hl_fetch_taps(hl_lattice g)
+/* Samples 00, 10, 01, 11 from base + corner on. */
+hl_dsf_taps hl_read_quad(hl_lattice g, vec2 corner)
 {
+    if (g.side == 1.0)
+        return hl_read_dsf((g.base + corner + 1.0) /
+                           vec2(hl_spec_light_w, hl_spec_light_h));
     hl_dsf_taps t;
     for (int i = 0; i < 4; i++) {
-        vec2 v = hl_fetch_dsf(hl_texel(g, vec2(float(i & 1), float(i >> 1))));
+        vec2 at = corner + vec2(float(i & 1), float(i >> 1));
+        vec2 v = hl_fetch_dsf(hl_texel(g, at));
         t.depth[i] = v.x;
         t.id[i] = v.y;
     }
@@ -298,15 +303,17 @@ vec4 hl_fill_light(hl_lattice g, hl_pixel p, hl_dsf_taps t)
              hl_fill_miss(d.w, t.id.w, p.z, p.id, h, far)));
     float threshold = hl_threshold(p, 2.0 * g.side);
     float nearest = HL_FILL_NONE;
-    for (int i = 0; i < 16; i++) {
-        vec2 at = vec2(float(i & 3), float(i >> 2)) - 1.0;
-        float distance = hl_fill_distance(at.x, at.y, g.f);
-        if (distance >= nearest)
-            continue;
-        vec2 v = hl_fetch_dsf(hl_texel(g, at));
-        if (hl_dsf_accept(v.x * p.step, v.y, p.z, p.id, threshold, h) > 0.0) {
-            nearest = distance;
-            best = at;
+    for (int q = 0; q < 4; q++) {
+        vec2 corner = vec2(float(q & 1), float(q >> 1)) * 2.0 - 1.0;
+        hl_dsf_taps s = hl_read_quad(g, corner);
+        vec4 a = hl_accept(s, p, threshold);
+        for (int i = 0; i < 4; i++) {
+            vec2 at = corner + vec2(float(i & 1), float(i >> 1));
+            float distance = hl_fill_distance(at.x, at.y, g.f);
+            if (a[i] > 0.0 && distance < nearest) {
+                nearest = distance;
+                best = at;
+            }
         }
     }
     return hl_fetch_light(hl_texel(g, best));
@@ -346,7 +353,7 @@ vec4 hl_read_stippled(vec4 ids)
     vec4 a = vec4(1.0);
     if (hl_spec_dsf != uint(HL_DSF_OFF)) {
         hl_pixel p = hl_look(ids);
-        hl_dsf_taps t = hl_fetch_taps(g);
+        hl_dsf_taps t = hl_read_quad(g, vec2(0.0));
         a = hl_accept(t, p, hl_threshold(p, g.side));
         if (hl_spec_fill != 0u && a == vec4(0.0))
             return hl_fill_light(g, p, t);

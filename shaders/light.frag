@@ -75,11 +75,11 @@ void main()
     hl_sum s = hl_sum_batch(p, n, v, exponent);
 #endif
 #ifdef HL_SHADOW_MAP
-    if (s.diffuse != vec3(0.0)) {
-        float lit = hl_shadow_lit(p, n);
-        s.diffuse *= lit;
-        s.intensity *= lit;
-    }
+    /* No branch by what is lit at all: lavapipe 22.3 takes branches that hang
+     * on a uniform apart, and loses its way. */
+    float lit = hl_shadow_lit(p, n);
+    s.diffuse *= lit;
+    s.intensity *= lit;
 #endif
     out_light = min(vec4(s.diffuse, s.intensity) * hl_spec_light_out,
                     vec4(HL_HALF_MAX));

@@ -53,6 +53,24 @@ static void some_choices(struct fz *f, bool wild, struct hl_needs *n)
                                          f, wild, 4));
 }
 
+static void some_features(struct fz *f, bool wild, struct hl_needs *n)
+{
+    n->blended_layers = count(f, wild, 20);
+    n->shadows = (enum hl_shadows)choice(f, wild, 3);
+    n->n_shadow_lights = count(f, wild, 100);
+    n->shadow_points = fz_bool(f);
+    n->shadow_size = fz_bool(f) ? 0 : count(f, wild, 4096);
+    n->volume_texels = fz_bool(f) ? 0 : count(f, wild, 100000);
+    n->motion = fz_bool(f);
+    n->brdfs = fz_bool(f);
+    n->translucency = (enum hl_translucency)choice(f, wild, 4);
+    n->stipple_filter = (enum hl_stipple_filter)choice(f, wild, 3);
+    n->stipple_mode = (enum hl_stipple_mode)choice(f, wild, 3);
+    n->fill = (enum hl_fill)choice(f, wild, 3);
+    n->fetch = (enum hl_fetch)choice(f, wild, 3);
+    n->no_centroid = fz_bool(f);
+}
+
 static struct hl_needs some_needs(struct fz *f, bool wild)
 {
     struct hl_needs n;
@@ -72,6 +90,8 @@ static struct hl_needs some_needs(struct fz *f, bool wild)
     n.peak = real(f, wild, 10000);
     n.max_error = fz_bool(f) ? 0 : real(f, wild, 255);
     some_choices(f, wild, &n);
+    if (fz_bool(f))
+        some_features(f, wild, &n);
     return n;
 }
 

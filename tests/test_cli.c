@@ -131,7 +131,7 @@ static void asking_for_help_is_no_error(void **state)
         assert_int_equal(strstr(r.out, "halflight conform") != NULL, i < 4);
     }
     tool_done(&r, state, "--version");
-    sk_assert_contains(r.out, "halflight 1");
+    sk_assert_contains(r.out, "halflight 2");
     assert_int_equal(sk_count(state), 0);
 }
 

@@ -6,6 +6,8 @@
 #include <string.h>
 #include "hal/backend.h"
 #include "platforms/cli/readback.h"
+#include "shaders/shared/stipple.h"
+#include "tests/console_kit.h"
 #include "tests/frame_kit.h"
 
 enum { N = FK_W * FK_H, LIGHT_W = 100, LIGHT_H = 56, TEXELS = 100 * 56 };
@@ -300,6 +302,272 @@ static void fifteen_layers_are_lit_as_forward(void **state)
     lit_as_forward(backend_of(state), "native", HL_TRANSLUCENCY_4X4, 15);
 }
 
+/* ---- who gets which pattern --------------------------------------------- */
+
+/* Wanted patterns land in their cells; 0 is lit forward, and two that overlap
+ * and want one pattern are a conflict, and drawn. */
+static void users_choose_patterns(void **state)
+{
+    static const uint8_t wanted[] = { 3, 1, 0, 1, 2 };
+    struct fk_run run;
+    begin(ck_machine(state), HL_TRANSLUCENCY_2X2);
+    scene.needs.stipple_mode = HL_STIPPLE_USER;
+    panes(5);
+    for (int i = 0; i < 5; i++)
+        scene.item[1 + i].stipple = wanted[i];
+    create(&run, HL_PIPELINE_INFERRED);
+    uint32_t *id = ids(&run);
+    for (int i = 0; i < 5; i++) {
+        hl_vec2 c = hl_stipple_cell(wanted[i], 2);
+        uint32_t cell = 1u << ((uint32_t)c.x + 2 * (uint32_t)c.y);
+        uint32_t seen = cells_of(id, scene.item[1 + i].id_base, 2);
+        /* Of the two with pattern 1 the nearer may hide the other. */
+        assert_true(seen == (wanted[i] ? cell : 0) || (i == 1 && !seen));
+    }
+    assert_int_equal(run.stats.stippled, 4);
+    assert_int_equal(run.stats.unstippled, 1);
+    assert_int_equal(run.stats.stipple_conflicts, 1);
+    scene.item[2].stipple = 4;
+    CK_REFUSED(scene.m, hl_frame_draw(run.r, &scene.frame, NULL),
+               HL_ERR_INVALID, HL_MSG_ARGUMENT,
+               "hl_frame.items 2: stipple is no pattern");
+    free(id);
+    fk_destroy(&run);
+    fk_end(&scene);
+}
+
+static void swap_first_and_last(void)
+{
+    struct hl_item it = scene.item[1];
+    scene.item[1] = scene.item[3];
+    scene.item[3] = it;
+}
+
+/* What has a name keeps its pattern wherever it is in the array; what has none
+ * is known by its place. */
+static void names_keep_patterns(void **state)
+{
+    begin(ck_machine(state), HL_TRANSLUCENCY_2X2);
+    panes(3);
+    for (int named = 0; named < 2; named++) {
+        struct fk_run run;
+        for (uint32_t i = 0; i < 3 && named; i++)
+            scene.item[1 + i].name = 70 - 30 * i;
+        create(&run, HL_PIPELINE_INFERRED);
+        uint32_t of = scene.item[1].id_base;
+        uint32_t *id = ids(&run), before = cells_of(id, of, 2);
+        free(id);
+        swap_first_and_last();
+        id = ids(&run);
+        assert_true((cells_of(id, of, 2) == before) == named);
+        assert_int_equal(run.stats.stipple_changes, 0);
+        free(id);
+        scene.item[1].name = scene.item[2].name = 5;
+        CK_REFUSED(scene.m, hl_frame_draw(run.r, &scene.frame, NULL),
+                   HL_ERR_INVALID, HL_MSG_ARGUMENT, "one name");
+        swap_first_and_last();
+        fk_destroy(&run);
+        scene.item[1].name = scene.item[2].name = 0;
+    }
+    fk_end(&scene);
+}
+
+/* ---- the same frame again ----------------------------------------------- */
+
+static void crowd(uint64_t *seed)
+{
+    wall();
+    for (int i = 0; i < 50; i++) {
+        struct hl_item *it = fk_add(&scene, FK_QUAD, FK_BLENDED, 0, 0, 0,
+                                    (float)ck_between(seed, 0.6, 1.6));
+        it->world[12] = (float)ck_between(seed, -6, 6);
+        it->world[13] = (float)ck_between(seed, -3, 3);
+        it->world[14] = (float)ck_between(seed, -4, 3);
+        fk_material(&scene, it)->base[3] = 0.3f;
+    }
+}
+
+/* Pictures of the inside are of the frame that was drawn, and leave the next
+ * one as it would have been: the crowd has too few patterns, so that an
+ * assignment made once more would be another. */
+static void looking_inside_changes_no_pattern(void **state)
+{
+    static float lights[TEXELS];
+    struct fk_run watched, alone;
+    uint64_t seed = mk_seed();
+    uint32_t without = 0, changes = 0;
+    begin(ck_machine(state), HL_TRANSLUCENCY_2X2);
+    crowd(&seed);
+    create(&watched, HL_PIPELINE_INFERRED);
+    create(&alone, HL_PIPELINE_INFERRED);
+    for (int frame = 0; frame < 16; frame++) {
+        uint32_t *a = ids(&alone), *b = ids(&watched);
+        assert_memory_equal(a, b, TEXELS * sizeof *a);
+        assert_memory_equal(&alone.stats, &watched.stats, sizeof alone.stats);
+        for (int k = 0; k < 3; k++)
+            assert_int_equal(hl_frame_inspect(watched.r, &scene.frame,
+                                              HL_INSPECT_LIGHTS, lights,
+                                              sizeof lights), HL_OK);
+        without += alone.stats.unstippled;
+        changes += alone.stats.stipple_changes;
+        for (int i = 1; i <= 50; i++)
+            scene.item[i].world[12 + i % 2] += i % 4 < 2 ? 0.05f : -0.05f;
+        free(a);
+        free(b);
+    }
+    assert_true(without > 16 && changes > 16);
+    fk_destroy(&watched);
+    fk_destroy(&alone);
+    fk_end(&scene);
+}
+
+/* ---- more than there is room for ---------------------------------------- */
+
+/* 200 panes over each other are 19,900 pairs, more than the 6,400 there is
+ * room for; of the nearer 100 three have patterns. */
+static void crowds_beyond_the_limit_are_drawn(void **state)
+{
+    enum { PANES = 200 };
+    static struct hl_item items[1 + PANES];
+    struct fk_run run;
+    begin(ck_machine(state), HL_TRANSLUCENCY_2X2);
+    wall();
+    items[0] = scene.item[0];
+    struct hl_item *one = pane(8, 0, 0, 0.01);
+    fk_prepare(&run, &scene, HL_PIPELINE_INFERRED);
+    for (int i = 0; i < PANES; i++) {
+        items[1 + i] = *one;
+        items[1 + i].world[14] -= 0.01f * (float)i;
+        items[1 + i].id_base += (uint32_t)i;
+    }
+    scene.frame.items = items;
+    scene.frame.n_items = 1 + PANES;
+    run.desc.max_items = 1 + PANES;
+    assert_int_equal(fk_create(&run), HL_OK);
+    uint32_t *id = ids(&run);
+    assert_int_equal(run.stats.stippled, 3);
+    assert_int_equal(run.stats.unstippled, PANES - 3);
+    assert_int_equal(run.stats.stipple_conflicts, 0);
+    for (uint32_t i = 0; i < PANES; i++)
+        assert_true(i < 100 || !cells_of(id, items[1 + i].id_base, 2));
+    free(id);
+    fk_destroy(&run);
+    fk_end(&scene);
+}
+
+/* ---- holes -------------------------------------------------------------- */
+
+enum { LEFT = 255 };
+
+/* Opaque in its left half. */
+static hl_tex texture(struct ck_machine *m, uint8_t right)
+{
+    uint8_t texel[8 * 8][4];
+    struct hl_tex_desc d = { .format = HL_FORMAT_RGBA8_SRGB, .width = 8,
+                             .height = 8 };
+    hl_tex t;
+    memset(texel, 255, sizeof texel);
+    for (int i = 0; i < 64; i++)
+        texel[i][3] = i % 8 < 4 ? LEFT : right;
+    assert_int_equal(hl_tex_create(m->device, &t, &d), HL_OK);
+    assert_int_equal(hl_tex_write(m->device, t, 0, texel, sizeof texel),
+                     HL_OK);
+    return t;
+}
+
+/* Texels of its two halves that a surface writes; the texture's middle is
+ * filtered, as wide as one of 8 texels of 40 pixels: left out. */
+static void halves(struct fk_run *run, uint32_t n[2])
+{
+    uint32_t *id = ids(run);
+    n[0] = n[1] = 0;
+    for (uint32_t i = 0; i < TEXELS; i++) {
+        int x = (int)(i % LIGHT_W) - LIGHT_W / 2;
+        if (id[i] == scene.item[1].id_base && (x < -5 || x >= 5))
+            n[x >= 0]++;
+    }
+    free(id);
+}
+
+/* What can be seen makes light, and all is blended (K 6). */
+static void holes(struct ck_machine *m, enum fk_surface surface, uint8_t right,
+                  bool written)
+{
+    struct fk_run run;
+    uint32_t n[2];
+    double alpha = right / 255.0;
+    begin(m, HL_TRANSLUCENCY_2X2);
+    wall();
+    scene.surface[surface].blended = true;
+    struct hl_item *it = fk_add(&scene, FK_QUAD, surface, 0, 0, 0, 3);
+    struct hl_material *glow = fk_material(&scene, it);
+    hl_tex tex = it->texture[0].tex = texture(m, right);
+    glow->emission[0] = 1;
+    for (int c = 0; c < 3; c++)
+        glow->base[c] = 0;
+    for (int c = 0; c < 3; c++)
+        fk_material(&scene, &scene.item[0])->base[c] = 0;
+    create(&run, HL_PIPELINE_INFERRED);
+    halves(&run, n);
+    /* A pattern's share of 33 x 33 / 2 texels less 5 columns. */
+    assert_true(n[0] > 60 && (written ? n[1] > 60 : n[1] == 0));
+    float *f = picture(&run);
+    for (int y = 30; y < 60; y++) {
+        ck_near((double)fk_at(f, 60, y)[0], 1, 1.0 / 1024);
+        ck_near((double)fk_at(f, 100, y)[0], alpha, 1.0 / 1024);
+    }
+    free(f);
+    fk_destroy(&run);
+    hl_tex_destroy(m->device, &tex);
+    fk_end(&scene);
+}
+
+static void holes_make_no_light(void **state)
+{
+    struct ck_machine *m = ck_machine(state);
+    holes(m, FK_MASKED, 0, false);
+    holes(m, FK_MASKED, 100, true);        /* below the cutoff, 127.5         */
+    holes(m, FK_FULL, 0, false);
+    holes(m, FK_FULL, 100, true);
+}
+
+/* ---- nothing translucent ------------------------------------------------ */
+
+/* However a scene would have its translucent surfaces: without any it has the
+ * plan that it has without a wish, and so the same programs and memory. */
+static void nothing_translucent_pays_nothing(void **state)
+{
+    static const struct hl_surface surface[2];
+    static struct hl_plan plain, ready, used;
+    (void)state;
+    for (int k = 1; k < HL_PIPELINE_COUNT; k++) {
+        struct hl_renderer_desc d = { .surfaces = surface, .n_surfaces = 2,
+                                      .max_items = 100 };
+        struct hl_needs n = con_needs();
+        struct hl_caps caps;
+        ck_lavapipe(&caps);
+        plain = con_plan((enum hl_pipeline)k, &n, &caps);
+        n.translucency = HL_TRANSLUCENCY_4X4;
+        n.stipple_filter = HL_STIPPLE_BILINEAR;
+        n.stipple_mode = HL_STIPPLE_BY_DEPTH;
+        n.blended_layers = 9;
+        ready = con_plan((enum hl_pipeline)k, &n, &caps);
+        assert_memory_equal(&plain, &ready, sizeof plain);
+        assert_int_equal(plain.translucency, HL_TRANSLUCENCY_AUTO);
+        n.blended = true;
+        used = con_plan((enum hl_pipeline)k, &n, &caps);
+        bool inferred = k == HL_PIPELINE_INFERRED;
+        assert_int_equal(used.stipple, inferred ? 4 : 0);
+        assert_int_equal(used.translucency,
+                         inferred ? HL_TRANSLUCENCY_4X4
+                                  : HL_TRANSLUCENCY_FORWARD);
+        d.plan = &plain;
+        size_t bytes = hl_renderer_bytes(&d);
+        d.plan = &used;
+        assert_true((hl_renderer_bytes(&d) > bytes) == inferred);
+    }
+}
+
 #define DRAWN(name) \
     CK_ON("vulkan", name), CK_ON("gl", name), CK_ON("packemu", name)
 
@@ -310,6 +578,12 @@ int main(void)
         DRAWN(three_layers_are_lit_as_forward),
         DRAWN(a_fourth_layer_goes_forward),
         DRAWN(fifteen_layers_are_lit_as_forward),
+        DRAWN(users_choose_patterns),
+        DRAWN(names_keep_patterns),
+        DRAWN(looking_inside_changes_no_pattern),
+        DRAWN(crowds_beyond_the_limit_are_drawn),
+        DRAWN(holes_make_no_light),
+        cmocka_unit_test(nothing_translucent_pays_nothing),
     };
     return cmocka_run_group_tests_name("stippled frames", tests, NULL, NULL);
 }

@@ -127,7 +127,7 @@ static void all_kinds(struct fk_scene *s)
 
 static void every_kind_is_lit_alike(void **state)
 {
-    on_profiles(state, all_kinds, 19, 1200);
+    on_profiles(state, all_kinds, 19, 700);
 }
 
 /* Far inside; at the eye; the near plane (0.1 m) across the border, which

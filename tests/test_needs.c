@@ -225,8 +225,10 @@ static void layers_are_the_most_over_a_point(void **state)
         s.item[i].surface = 1;
         assert_int_equal(measure(&s)->blended_layers, 1);
     }
+    s.item[2].world[12] = -8;                  /* the one in the middle      */
+    s.item[0].world[12] = 0;
     for (int i = 1; i < ITEMS; i++) {          /* in a row, away from us      */
-        s.item[i].world[12] = s.item[0].world[12];
+        s.item[i].world[12] = 0;
         s.item[i].world[14] = -20 - 4 * (float)i;
         assert_int_equal(measure(&s)->blended_layers, i + 1);
     }
@@ -240,8 +242,6 @@ static void layers_are_the_most_over_a_point(void **state)
         s.item[0].world[k * 5] = 0.001f;
     assert_int_equal(measure(&s)->blended_layers, 1);
     s.frame.n_items = 2;
-    s.item[1].world[14] = -30;
-    s.item[1].world[12] = s.item[0].world[12] * 1.5f;
     assert_int_equal(measure(&s)->blended_layers, 2);
 }
 

@@ -43,6 +43,27 @@ static uint32_t some_choice(uint64_t *seed, uint32_t n)
     return mk_below(seed, 40) ? mk_below(seed, n) : n + mk_below(seed, 9);
 }
 
+/* Three of four frames have none of them. */
+static void some_features(struct hl_needs *n, uint64_t *seed)
+{
+    if (mk_below(seed, 4))
+        return;
+    n->blended_layers = some_count(seed);
+    n->shadows = (enum hl_shadows)some_choice(seed, 3);
+    n->n_shadow_lights = some_count(seed);
+    n->shadow_points = mk_below(seed, 2);
+    n->shadow_size = mk_below(seed, 2) ? some_choice(seed, 16384) : 0;
+    n->volume_texels = some_count(seed);
+    n->motion = mk_below(seed, 2);
+    n->brdfs = mk_below(seed, 2);
+    n->translucency = (enum hl_translucency)some_choice(seed, 4);
+    n->stipple_filter = (enum hl_stipple_filter)some_choice(seed, 3);
+    n->stipple_mode = (enum hl_stipple_mode)some_choice(seed, 3);
+    n->fill = (enum hl_fill)some_choice(seed, 3);
+    n->fetch = (enum hl_fetch)some_choice(seed, 3);
+    n->no_centroid = mk_below(seed, 2);
+}
+
 static struct hl_needs some_needs(uint64_t *seed)
 {
     struct hl_needs n;
@@ -84,6 +105,7 @@ static struct hl_needs some_needs(uint64_t *seed)
                    ? 0 : some_choice(seed, 4));
     n.decals = mk_below(seed, 2);
     n.light_depth_bound = mk_below(seed, 2);
+    some_features(&n, seed);
     return n;
 }
 

@@ -574,6 +574,54 @@ static void bad_csv_leaves_the_scene_alone(void **state)
     hlh_scene_free(&s);
 }
 
+/* ---- extras ---- */
+
+static void our_extras_are_read(void **state)
+{
+    struct hlh_scene s = load(state, "'name':'paint',", "'name':'paint',"
+        "'alphaMode':'MASK','extras':{'other':1,'halflight':{'fence':true,"
+        "'decal':true,'brdf':1,'unknown':[]}},");
+    assert_true(s.materials[0].fence && s.materials[0].decal);
+    assert_int_equal(s.materials[0].brdf, HLH_BRDF_SKIN);
+    assert_false(s.lights[0].shadow || s.objects[0].no_shadow);
+    hlh_scene_free(&s);
+    s = load(state, "'intensity':10,", "'intensity':10,'extras':{'halflight':"
+             "{'shadow':true,'falloff':'smooth'}},");
+    assert_true(s.lights[0].shadow);
+    assert_int_equal(s.lights[0].falloff, HLH_FALLOFF_SMOOTH);
+    hlh_scene_free(&s);
+    s = load(state, "{'mesh':0,", "{'mesh':0,'extras':{'halflight':"
+             "{'no_shadow':true}},");
+    assert_true(s.objects[0].no_shadow);
+    hlh_scene_free(&s);
+}
+
+/* Anything may stand in extras: a load neither fails nor takes it for ours. A
+ * fence is a fence only of what is masked. */
+static void extras_of_others_are_left_alone(void **state)
+{
+    static const char *const odd[] = {
+        "7", "'x'", "null", "[]", "[{'halflight':{'decal':true}}]",
+        "{'halflight':true}", "{'halflight':[{'decal':true}]}",
+        "{'halflight':{'decal':1,'brdf':'1','fence':'true'}}",
+        "{'halflight':{'decal':{},'brdf':7,'fence':true}}",
+        "{'halflight':{'decal':null,'brdf':true,'fence':[true]}}",
+        "{'Halflight':{'decal':true,'brdf':1}}",
+    };
+    for (size_t i = 0; i < sizeof odd / sizeof *odd; i++) {
+        char by[160];
+        snprintf(by, sizeof by, "'name':'paint','extras':%s,", odd[i]);
+        struct hlh_scene s = load(state, "'name':'paint',", by);
+        assert_false(s.materials[0].fence || s.materials[0].decal);
+        assert_int_equal(s.materials[0].brdf, HLH_BRDF_BLINN_PHONG);
+        hlh_scene_free(&s);
+        snprintf(by, sizeof by, "'intensity':10,'extras':%s,", odd[i]);
+        s = load(state, "'intensity':10,", by);
+        assert_false(s.lights[0].shadow);
+        hlh_scene_free(&s);
+    }
+}
+
 int main(void)
 {
     static const struct CMUnitTest tests[] = {
@@ -596,6 +644,8 @@ int main(void)
         cmocka_unit_test(sparse_accessors_replace_elements),
         cmocka_unit_test(external_and_inline_buffers_are_found),
         cmocka_unit_test(extensions_that_change_nothing_are_ignored),
+        cmocka_unit_test(our_extras_are_read),
+        cmocka_unit_test(extras_of_others_are_left_alone),
         cmocka_unit_test(obj_surfaces_are_grey_and_never_culled),
         cmocka_unit_test(obj_polygons_are_triangulated),
         cmocka_unit_test(obj_keeps_normals_and_drops_what_is_not_finite),

@@ -10,12 +10,15 @@
  * every `side` texels from `cell` on. Fragments lie f samples from sample b. */
 struct lattice {
     float bx[HL_PE_BATCH], by[HL_PE_BATCH], fx[HL_PE_BATCH], fy[HL_PE_BATCH];
-    float cell[2], side, last[2];
+    float cell[2], side;
+    float last[2], most[2];                      /* texel, sample            */
 };
 
-/* Fragments without a tap, by their number. */
+/* Fragments without a tap, by their number, and what they are compared by. */
 struct lost {
     uint32_t n, at[HL_PE_BATCH];
+    float z[HL_PE_BATCH], id[HL_PE_BATCH], half_step[HL_PE_BATCH];
+    float fx[HL_PE_BATCH], fy[HL_PE_BATCH], threshold[HL_PE_BATCH];
     float nearest[HL_PE_BATCH];
     float x[HL_PE_BATCH], y[HL_PE_BATCH];        /* from sample b            */
 };
@@ -43,6 +46,8 @@ static void find_lattice(const struct pe_draw *d,
     g->side = side;
     g->last[0] = pe_spec_float(d, HL_SPEC_LIGHT_WIDTH) - 1.0f;
     g->last[1] = pe_spec_float(d, HL_SPEC_LIGHT_HEIGHT) - 1.0f;
+    for (int c = 0; c < 2; c++)
+        g->most[c] = hl_floor((g->last[c] - g->cell[c]) / side);
     pe_light_pixels(d, f, x, y);
     along(x, cell.x, side, PE_LANES(f->n), g->bx, g->fx);
     along(y, cell.y, side, PE_LANES(f->n), g->by, g->fy);
@@ -52,10 +57,8 @@ static void find_lattice(const struct pe_draw *d,
  * for buffers that are smaller than a pattern's block. */
 static inline int32_t texel_of(const struct lattice *g, int axis, float s)
 {
-    float last = g->last[axis], cell = g->cell[axis];
-    float most = hl_floor((last - cell) / g->side);
-    float at = hl_max(hl_min(s, most), 0.0f) * g->side + cell;
-    return (int32_t)hl_min(at, last);
+    float at = hl_max(hl_min(s, g->most[axis]), 0.0f) * g->side;
+    return (int32_t)hl_min(at + g->cell[axis], g->last[axis]);
 }
 
 /* ---- where all four are rejected ----------------------------------------- */
@@ -68,19 +71,35 @@ static void find_lost(float (*a)[HL_PE_BATCH], uint32_t n, struct lost *l)
             l->at[l->n++] = i;
 }
 
+static void gather_lost(const struct pe_draw *d,
+                        const struct hl_pe_fragments *f,
+                        const struct lattice *g, struct lost *l)
+{
+    const float *z = pe_pixel_depths(f), *id = f->vary[HL_PE_ID];
+    float threshold[HL_PE_BATCH];
+    pe_thresholds(d, f, 2.0f * g->side, threshold);
+    for (uint32_t k = 0; k < l->n; k++) {
+        uint32_t i = l->at[k];
+        l->z[k] = z[i];
+        l->id[k] = id[i];
+        l->half_step[k] = hl_dsf_half_step(id[i]);
+        l->fx[k] = g->fx[i];
+        l->fy[k] = g->fy[i];
+        l->threshold[k] = threshold[i];
+    }
+}
+
 /* The one of the four that is nearest in depth. */
 static void nearest_in_depth(const struct pe_draw *d,
-                             const struct hl_pe_fragments *f,
                              const struct pe_dsf *dsf, struct lost *l)
 {
     float far = pe_frame(d)->depth.w, step = far / 65535.0f;
-    const float *z = pe_pixel_depths(f), *id = f->vary[HL_PE_ID];
     for (uint32_t k = 0; k < l->n; k++) {
         uint32_t i = l->at[k];
-        float miss[4], half_step = hl_dsf_half_step(id[i]);
+        float miss[4];
         for (int t = 0; t < 4; t++)
             miss[t] = hl_fill_miss(dsf->depth[t][i] * step, dsf->id[t][i],
-                                   z[i], id[i], half_step, far);
+                                   l->z[k], l->id[k], l->half_step[k], far);
         hl_vec2 tap = hl_fill_tap(hl_v4(miss[0], miss[1], miss[2], miss[3]));
         l->nearest[k] = HL_FILL_NONE;
         l->x[k] = tap.x;
@@ -88,39 +107,55 @@ static void nearest_in_depth(const struct pe_draw *d,
     }
 }
 
-static void texels(const struct lattice *g, const struct lost *l, float dx,
-                   float dy, int32_t *x, int32_t *y)
+/* Samples 00, 10, 01, 11 from base + (dx, dy) on. */
+static void read_quad(const struct pe_draw *d, const struct lattice *g,
+                      const struct lost *l, float dx, float dy,
+                      struct pe_dsf *out)
 {
-    for (uint32_t k = 0; k < l->n; k++) {
-        uint32_t i = l->at[k];
-        x[k] = texel_of(g, 0, g->bx[i] + dx);
-        y[k] = texel_of(g, 1, g->by[i] + dy);
+    struct pe_taps t;
+    if (g->side == 1.0f) {
+        for (uint32_t k = 0; k < l->n; k++) {
+            t.x[k] = pe_texel(g->bx[l->at[k]] + dx);
+            t.y[k] = pe_texel(g->by[l->at[k]] + dy);
+        }
+        pe_read_dsf(d, &t, l->n, out);
+        return;
+    }
+    for (int s = 0; s < 4; s++) {
+        for (uint32_t k = 0; k < l->n; k++) {
+            uint32_t i = l->at[k];
+            t.x[k] = texel_of(g, 0, g->bx[i] + dx + (float)(s & 1));
+            t.y[k] = texel_of(g, 1, g->by[i] + dy + (float)(s >> 1));
+        }
+        pe_fetch_dsf(d, t.x, t.y, l->n, out->depth[s], out->id[s]);
     }
 }
 
-/* Sample (dx, dy) from the base, where it is nearer than what was found. */
-static void try_sample(const struct pe_draw *d,
-                       const struct hl_pe_fragments *f,
-                       const struct lattice *g, const float *threshold,
-                       float dx, float dy, struct lost *l)
+/* Sample (x, y) from the base, where it is nearer than what was found. */
+PE_WIDE
+static void try_sample(struct lost *l, float step, float x, float y,
+                       const float *depth, const float *id)
+{
+    for (uint32_t k = 0; k < PE_LANES(l->n); k++) {
+        float distance = hl_fill_distance(x, y, hl_v2(l->fx[k], l->fy[k]));
+        float a = hl_dsf_accept(depth[k] * step, id[k], l->z[k], l->id[k],
+                                l->threshold[k], l->half_step[k]);
+        bool nearer = (a > 0.0f) & (distance < l->nearest[k]);
+        l->nearest[k] = nearer ? distance : l->nearest[k];
+        l->x[k] = nearer ? x : l->x[k];
+        l->y[k] = nearer ? y : l->y[k];
+    }
+}
+
+static void try_quad(const struct pe_draw *d, const struct lattice *g,
+                     float dx, float dy, struct lost *l)
 {
     float step = pe_frame(d)->depth.w / 65535.0f;
-    const float *z = pe_pixel_depths(f), *id = f->vary[HL_PE_ID];
-    int32_t x[HL_PE_BATCH], y[HL_PE_BATCH];
-    float depth[HL_PE_BATCH], found[HL_PE_BATCH];
-    texels(g, l, dx, dy, x, y);
-    pe_fetch_dsf(d, x, y, l->n, depth, found);
-    for (uint32_t k = 0; k < l->n; k++) {
-        uint32_t i = l->at[k];
-        float distance = hl_fill_distance(dx, dy, hl_v2(g->fx[i], g->fy[i]));
-        if (distance >= l->nearest[k] ||
-            hl_dsf_accept(depth[k] * step, found[k], z[i], id[i],
-                          threshold[i], hl_dsf_half_step(id[i])) == 0.0f)
-            continue;
-        l->nearest[k] = distance;
-        l->x[k] = dx;
-        l->y[k] = dy;
-    }
+    struct pe_dsf dsf;
+    read_quad(d, g, l, dx, dy, &dsf);
+    for (int s = 0; s < 4; s++)
+        try_sample(l, step, dx + (float)(s & 1), dy + (float)(s >> 1),
+                   dsf.depth[s], dsf.id[s]);
 }
 
 static void light_lost(const struct pe_draw *d, const struct lattice *g,
@@ -142,15 +177,10 @@ static void fill(const struct pe_draw *d, const struct hl_pe_fragments *f,
                  const struct lattice *g, const struct pe_dsf *dsf,
                  struct lost *l, float (*out)[HL_PE_BATCH])
 {
-    float threshold[HL_PE_BATCH];
-    nearest_in_depth(d, f, dsf, l);
-    pe_thresholds(d, f, 2.0f * g->side, threshold);
-    for (int i = 0; i < 16; i++) {
-        int x = (i & 3) - 1, y = (i >> 2) - 1;
-        bool inner = (x == 0 || x == 1) && (y == 0 || y == 1);
-        if (!inner)
-            try_sample(d, f, g, threshold, (float)x, (float)y, l);
-    }
+    gather_lost(d, f, g, l);
+    nearest_in_depth(d, dsf, l);
+    for (int q = 0; q < 4; q++)
+        try_quad(d, g, q & 1 ? 1.0f : -1.0f, q & 2 ? 1.0f : -1.0f, l);
     light_lost(d, g, l, out);
 }
 

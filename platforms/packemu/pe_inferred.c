@@ -14,13 +14,6 @@ static bool has_words(const struct pe_view *v)
 
 /* ---- taps ---------------------------------------------------------------- */
 
-/* Far outside of any texture; lanes beyond n hold anything at all. */
-static inline int32_t texel(float x)
-{
-    x = x > -65536.0f ? x : -65536.0f;
-    return (int32_t)(x < 65536.0f ? x : 65536.0f);
-}
-
 /* Where pixels lie among the centres of the L-buffer's texels. */
 void pe_light_pixels(const struct pe_draw *d, const struct hl_pe_fragments *f,
                      float *x, float *y)
@@ -50,7 +43,7 @@ static void taps_along(const float *pixel, uint32_t n, int32_t *corner,
 {
     for (uint32_t i = 0; i < n; i++) {
         float b = hl_floor(pixel[i]);
-        corner[i] = texel(b);
+        corner[i] = pe_texel(b);
         fraction[i] = pixel[i] - b;
     }
 }
@@ -115,8 +108,8 @@ static void split_numbers(const struct pe_draw *d, float (*v)[HL_PE_BATCH],
 }
 
 PE_WIDE
-static void read_dsf(const struct pe_draw *d, const struct pe_taps *t,
-                     uint32_t n, struct pe_dsf *out)
+void pe_read_dsf(const struct pe_draw *d, const struct pe_taps *t, uint32_t n,
+                 struct pe_dsf *out)
 {
     const struct pe_view *v = &d->view[HL_TEX_DSF];
     uint32_t lanes = PE_LANES(n);
@@ -169,7 +162,7 @@ void pe_accept_taps(const struct pe_draw *d, const struct hl_pe_fragments *f,
                     const struct pe_taps *t, float out[4][HL_PE_BATCH])
 {
     struct pe_dsf dsf;
-    read_dsf(d, t, f->n, &dsf);
+    pe_read_dsf(d, t, f->n, &dsf);
     pe_accept(d, f, &dsf, 1.0f, out);
 }
 
@@ -385,7 +378,7 @@ static void dsf_light(const struct pe_draw *d, const struct hl_pe_fragments *f,
     struct pe_dsf dsf;
     planes taps[4], a, b, w;
     pe_find_taps(d, f, &t);
-    read_dsf(d, &t, f->n, &dsf);
+    pe_read_dsf(d, &t, f->n, &dsf);
     pe_accept(d, f, &dsf, 1.0f, a);
     if (!filter || !all_accepted(a, f->n)) {
         bilinear(&t, lanes, b);

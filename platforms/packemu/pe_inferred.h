@@ -22,8 +22,18 @@ void pe_light_pixels(const struct pe_draw *, const struct hl_pe_fragments *,
                      float *x, float *y);
 const float *pe_pixel_depths(const struct hl_pe_fragments *);
 
+/* A texel's number; far outside of any texture it stays there. Lanes beyond n
+ * hold anything at all. */
+static inline int32_t pe_texel(float x)
+{
+    x = x > -65536.0f ? x : -65536.0f;
+    return (int32_t)(x < 65536.0f ? x : 65536.0f);
+}
+
 void pe_find_taps(const struct pe_draw *, const struct hl_pe_fragments *,
                   struct pe_taps *);
+void pe_read_dsf(const struct pe_draw *, const struct pe_taps *, uint32_t n,
+                 struct pe_dsf *);
 /* For taps within so many texels of the pixel on either axis. */
 void pe_thresholds(const struct pe_draw *, const struct hl_pe_fragments *,
                    float distance_texels, float *out);

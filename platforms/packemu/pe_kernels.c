@@ -59,6 +59,7 @@ const struct pe_vertex_kernel pe_vertex_kernels[HL_SHADER_COUNT] = {
     [HL_SHADER_MESH_OWN_VERT] = MESH(
         A(TANGENT) | A(NORMAL) | A_UV,
         V(ID) | V_NORMAL | V_UV | V_TANGENT | V_POSITION),
+    [HL_SHADER_MESH_DEPTH_VERT] = MESH(0, 0),
     [HL_SHADER_VOLUME_VERT] = { pe_vertex_volume, A(POSITION), 0 },
     [HL_SHADER_MESH_FORWARD_VERT] = MESH(A(NORMAL), V_NORMAL | V_POSITION),
     [HL_SHADER_MESH_FORWARD_FULL_VERT] = MESH(

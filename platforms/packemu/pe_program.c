@@ -33,7 +33,7 @@ static void set_defaults(union pe_spec *spec)
     spec[HL_SPEC_ID_STEPS].f = 65535.0f;
     spec[HL_SPEC_LIGHT_OUT].f = 1.0f;
     spec[HL_SPEC_MAP_SIZE].f = 1.0f;
-    spec[HL_SPEC_MAP_FACES].u = 1;
+    spec[HL_SPEC_MAP_KIND].u = HL_MAP_CONE;
 }
 
 static void take_specs(union pe_spec *spec, const struct hl_prog_desc *d)

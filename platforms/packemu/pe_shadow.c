@@ -20,15 +20,15 @@ static hl_vec3 turned(const hl_mat4 *m, hl_vec3 v, float w)
 }
 
 /* pe_int: a number that is none must not reach a conversion. */
-static void place(const struct hl_shadow_block *b, float side,
+static void place(const struct hl_shadow_block *b, uint32_t kind, float side,
                   const struct pe_lit_run *r, uint32_t n, struct filters *f)
 {
     for (uint32_t i = 0; i < n; i++) {
         hl_vec3 p = hl_v3(r->px[i], r->py[i], r->pz[i]), m;
         float z = -p.z, error = (b->error.x * z + b->error.y) * z;
         m = turned(&b->light, hl_v3(r->nx[i], r->ny[i], r->nz[i]), 0.0f);
-        hl_vec3 s = hl_shadow_place(turned(&b->light, p, 1.0f), m, b->map,
-                                    b->depth, error, side);
+        hl_vec3 s = hl_shadow_place(kind & 3u, turned(&b->light, p, 1.0f), m,
+                                    b->map, b->depth, error, side);
         float x = pe_floor(s.x - 0.5f), y = pe_floor(s.y - 0.5f);
         f->fx[i] = s.x - 0.5f - x;
         f->fy[i] = s.y - 0.5f - y;
@@ -85,15 +85,16 @@ static bool all_dark(const struct pe_lit_run *r, uint32_t n)
 void pe_shadow(const struct pe_draw *d, struct pe_lit_run *r, uint32_t n)
 {
     const struct hl_shadow_block *b = pe_block(d, HL_SLOT_SHADOW, sizeof *b);
-    bool barg = (pe_spec_uint(d, HL_SPEC_MAP_FACES) & HL_MAP_BARG) != 0;
+    uint32_t kind = pe_spec_uint(d, HL_SPEC_MAP_KIND);
     const struct pe_view *v = &d->view[HL_TEX_SHADOW];
     struct filters f;
     float lit[HL_PE_BATCH];
-    if (b->map.w == HL_SHADOW_NONE || all_dark(r, n))
+    if (all_dark(r, n))
         return;
     memset(lit, 0, sizeof lit);
-    place(b, pe_spec_float(d, HL_SPEC_MAP_SIZE), r, n, &f);
+    place(b, kind, pe_spec_float(d, HL_SPEC_MAP_SIZE), r, n, &f);
     for (int k = 0; k < 4; k++)
-        quad(v, barg, b->map.z, &f, k & 1 ? 1 : -1, k & 2 ? 1 : -1, n, lit);
+        quad(v, (kind & HL_MAP_BARG) != 0, b->map.z, &f, k & 1 ? 1 : -1,
+             k & 2 ? 1 : -1, n, lit);
     dim(r, n, lit);
 }

@@ -225,7 +225,7 @@ static bool hides(const struct hlr_prepared *p, const struct hlr_ray *ray,
 {
     struct hlr_hit hit;
     const struct hlh_material *m = p->instances[tri->object].material;
-    if (tri == own || hlr_is_blended(m) ||
+    if (tri == own || m->alpha == HLH_ALPHA_BLEND || m->decal ||
         p->scene->objects[tri->object].no_shadow || !tri_hit(&hit, ray, tri))
         return false;
     return m->alpha != HLH_ALPHA_MASK ||

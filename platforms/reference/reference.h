@@ -33,9 +33,9 @@
  * - Fences (hlh_material.fence) and decals are blended surfaces. A decal's
  *   normal is that of its own layer, not mixed into the one below.
  * - Shadows (options.shadows, lights with hlh_light.shadow): from each point
- *   one ray to the light; what is opaque, or masked and there by its alpha
- *   test (the texture's level 0), hides it from either side; what is blended,
- *   a fence, a decal or a no_shadow object does not. The triangle that the
+ *   one ray to the light; what is opaque, or masked (a fence too) and there by
+ *   its alpha test (the texture's level 0), hides it from either side; what is
+ *   blended, a decal or a no_shadow object does not. The triangle that the
  *   point lies on never does, nor what is nearer than 1e-7 of the largest of
  *   the point's coordinates: less than a float's step, so that a closed
  *   body's other faces count right up to their edges.

@@ -79,8 +79,7 @@
 #define HL_SPEC_BRDFS 28         /* 1: the exponent channel is a pair, and has
                                   * the BRDF as its second number            */
 #define HL_SPEC_MAP_SIZE 29      /* shadow map: texels a side, float         */
-#define HL_SPEC_MAP_FACES 30     /* shadow map: 1, or 6 of a point light; and
-                                  * HL_MAP_BARG                              */
+#define HL_SPEC_MAP_KIND 30      /* shadow map: HL_MAP_*                     */
 #define HL_SPEC_DECAL 31         /* geometry pass: 1 writes nothing but the
                                   * normal, with the surface's alpha         */
 
@@ -90,7 +89,13 @@
 /* How a depth target is sampled. */
 #define HL_DEPTH_READ_FLOAT 0
 #define HL_DEPTH_READ_BARG 1 /* three bytes of depth in rgb, high first      */
-#define HL_MAP_BARG 8       /* HL_SPEC_MAP_FACES: the map is read so         */
+/* Of a light's shadow map; and bits. */
+#define HL_MAP_NONE 0u      /* no map: all is lit                            */
+#define HL_MAP_CONE 1u
+#define HL_MAP_POINT 2u     /* six of them, by major axis                    */
+#define HL_MAP_PARALLEL 3u
+#define HL_MAP_SIX 4u       /* the target has 3 x 2 maps, not one            */
+#define HL_MAP_BARG 8u      /* sampled as HL_DEPTH_READ_BARG                 */
 
 /* L-buffers are sampled as raw bits (R32, RG32 or RGBA32 UINT), since one
  * gather of 32-bit words costs less than four fetches of texels. */
@@ -207,7 +212,7 @@ struct hl_volume_block {
 struct hl_shadow_block {
     hl_mat4 light;      /* view to light space, rigid, metres                */
     hl_vec4 map;        /* texels a unit of slope (parallel: a metre), 1 over
-                         * that, 1 (-1 where near is 1), HL_SHADOW_*         */
+                         * that, 1 (-1 where near is 1), 0                   */
     hl_vec4 depth;      /* stored depth = x / c + y (parallel: x c + y); least
                          * c; 0                                              */
     hl_vec4 error;      /* of view depth z: x z^2 + y z, metres              */

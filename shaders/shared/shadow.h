@@ -18,12 +18,8 @@
  * plane: normals up to atan(1/2 / (2 sqrt 2)) = 10 degrees off the surface,
  * and depth that is stored in steps. So no shadow begins nearer to its caster
  * than 2 sqrt 2 + 1/2 = 3.33 texels, nor is one lost farther than that. */
-#include "shaders/shared/lang.h"
+#include "shaders/shared/block.h"
 
-#define HL_SHADOW_NONE 0.0f     /* no map: all is lit                        */
-#define HL_SHADOW_CONE 1.0f
-#define HL_SHADOW_SIX 2.0f      /* by major axis                             */
-#define HL_SHADOW_PARALLEL 3.0f
 #define HL_SHADOW_KERNEL 2.0f   /* K                                         */
 #define HL_SHADOW_LIFT 0.5f     /* texels, always                            */
 /* Texels at a map's edge: K, and up to 4 by which a lifted point leaves the
@@ -59,14 +55,15 @@ HL_FN hl_vec3 hl_shadow_turn(float face, hl_vec3 v)
 }
 
 /* Texels from the left and top of all maps to the middle of the filter, and
- * the depth to compare with. q, n: point and unit normal in light space;
- * map, depth: of hl_shadow_block; error: metres more to lift. */
-HL_FN hl_vec3 hl_shadow_place(hl_vec3 q, hl_vec3 n, hl_vec4 map,
+ * the depth to compare with. kind: HL_MAP_* of block.h; q, n: point and unit
+ * normal in light space; map, depth: of hl_shadow_block; error: metres more to
+ * lift. */
+HL_FN hl_vec3 hl_shadow_place(uint kind, hl_vec3 q, hl_vec3 n, hl_vec4 map,
                               hl_vec4 depth, float error, float side)
 {
     float face = 0.0f;
-    bool parallel = map.w == HL_SHADOW_PARALLEL;
-    if (map.w == HL_SHADOW_SIX) {
+    bool parallel = kind == HL_MAP_PARALLEL;
+    if (kind == HL_MAP_POINT) {
         face = hl_shadow_face(q);
         q = hl_shadow_turn(face, q);
         n = hl_shadow_turn(face, n);
