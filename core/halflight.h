@@ -11,4 +11,5 @@
 #include "core/mesh.h"   /* normal groups, tangents                          */
 #include "core/ids.h"    /* region ids                                       */
 #include "core/stipple.h" /* patterns of translucent objects                 */
+#include "core/shadow_mesh.h" /* meshes that cast shadow volumes            */
 #endif

@@ -23,15 +23,20 @@ static bool can_filter(const struct hl_ask *ask,
     return ask->caps->format[light->format].use & HL_USE_LINEAR;
 }
 
-/* Nanoseconds a pixel for its light: four fetches, or one filtered where no
- * tap is rejected. */
+/* Nanoseconds a pixel for its light: four fetches, or one filtered and, where
+ * a tap is rejected, four: 6 to 68 % of pixels in seven built-in scenes, half
+ * of which have less than a quarter. A machine without a filter of its own
+ * fetches four to filter and weighs them: on a plane without rejections that
+ * cost 4 to 12 ns more than a gather on lavapipe and 5 to 8 on packemu, which
+ * is about ten fetches in all. */
 static void fetch_costs(const struct hl_plan *p, const struct hl_ask *ask,
                         double *gathered, double *filtered)
 {
-    const struct hl_cost_model *c = &ask->caps->cost;
-    (void)p;
-    *gathered = 4 * (double)c->fetch_ns;
-    *filtered = *gathered;
+    double fetch = (double)ask->caps->cost.fetch_ns;
+    bool software = ask->caps->kind == HL_DEVICE_CPU;
+    double rejected = rejects(p) ? 0.25 : 0.0;
+    *gathered = 4 * fetch;
+    *filtered = ((software ? 10 : 1) + rejected * 4) * fetch;
 }
 
 /* AUTO leaves machines that sample words alone: stages of an engine's own are

@@ -13,7 +13,8 @@ enum hl_role {                     /* of a target                            */
     HL_ROLE_NONE = 0,
     HL_ROLE_NORMAL,                /* G-buffer: normal x, y (K eq. 1)        */
     HL_ROLE_DSF,                   /* G-buffer: linear depth, region id      */
-    HL_ROLE_EXPONENT,              /* G-buffer: specular exponent            */
+    HL_ROLE_EXPONENT,              /* G-buffer: specular exponent; with
+                                    * brdfs a pair, BRDF the second          */
     HL_ROLE_LIGHT_DEPTH,           /* depth at L-buffer size                 */
     HL_ROLE_LIGHT,                 /* L-buffer                               */
     HL_ROLE_COLOR,                 /* the frame, linear                      */
@@ -21,7 +22,11 @@ enum hl_role {                     /* of a target                            */
     HL_ROLE_RESOLVED,              /* the frame, one sample a pixel          */
     HL_ROLE_DEPTH_COPY,            /* LIGHT_DEPTH, where a bound depth target
                                     * cannot be read: one float channel      */
-    HL_ROLE_MOTION,                /* G-buffer: screen motion, two numbers   */
+    /* G-buffer: motion since the last frame, x right and y down, a pair of
+     * pack.h hl_motion_decode: 2 is the whole target, cut to -1..1, 0 where
+     * nothing is or was seen. Without jitter. What is blended over by forward
+     * draws leaves it, and so do decals. */
+    HL_ROLE_MOTION,
     HL_ROLE_SHADOW_MAP,            /* depth from a light: 1 map, or 3 x 2    */
     HL_ROLE_COUNT
 };
@@ -115,7 +120,7 @@ struct hl_plan_target {
     float error;                   /* worst encoding error; unit by role:
                                     * NORMAL degrees up to 90 from the view
                                     * axis, DSF metres, EXPONENT and LIGHT
-                                    * and COLOR relative                     */
+                                    * and COLOR relative, MOTION as decoded  */
 };
 
 enum { HL_PLAN_COLORS = 4 };       /* of a pass                              */

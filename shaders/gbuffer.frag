@@ -39,8 +39,10 @@ vec2 hl_read_motion()
 void main()
 {
     hl_stipple_test();
+#ifdef HL_FULL
     if (hl_spec_mask != 0u)
         hl_alpha_test(hl_surface_alpha());
+#endif
     vec2 e = hl_normal_encode(hl_read_normal());
     out_normal = hl_two16_encode(hl_spec_two16, hl_snorm_to_unorm(e.x),
                                  hl_snorm_to_unorm(e.y));

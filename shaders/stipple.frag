@@ -10,8 +10,10 @@ layout(location = 0) out vec4 out_pattern;
 
 void main()
 {
+#ifdef HL_FULL
     if (hl_spec_mask != 0u)
         hl_alpha_test(hl_surface_alpha());
+#endif
     hl_stipple_test();
     out_pattern = vec4((hl_object.flat_ids.z + 1.0) / 255.0, 0.0, 0.0, 1.0);
 }

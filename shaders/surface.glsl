@@ -68,14 +68,6 @@ hl_surface hl_read_surface()
 #endif
 
 #ifndef HL_FULL
-/* Factors alone: nothing is cut from such a surface, but it may be invisible
- * as a whole. */
-void hl_alpha_test(float alpha)
-{
-    if (hl_spec_mask == 2u && alpha < HL_ALPHA_VISIBLE)
-        discard;
-}
-
 float hl_surface_alpha() { return hl_material.base.a; }
 #endif
 

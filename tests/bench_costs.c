@@ -2,9 +2,10 @@
 /* Counted cost of the pipelines with few and many lights: not a test, a
  * program to run by hand.
  *   bench_costs [WxH [SCENE...]]
- * For each scene and number of lights, on every backend here: counted and
- * predicted cost of each pipeline, which one is cheapest and which one AUTO
- * takes. */
+ * For each scene and number of lights, for lavapipe's costs and packemu's:
+ * counted and predicted cost of each pipeline, which one is cheapest and
+ * which one AUTO takes. ROUNDS=N adds wall times of N frames of each, in
+ * turn: median, and quartiles in brackets. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -29,7 +30,18 @@ static bool caps_of(struct hl_caps *out, const char *backend)
     return true;
 }
 
-static void row(struct ct_scene *s, const struct hl_caps *caps, uint32_t n)
+static void times(struct ct_scene *timed, uint32_t n, uint32_t rounds)
+{
+    struct ct_times t[HL_PIPELINE_COUNT];
+    ct_lights(timed, n);
+    if (rounds && timed->machine.device && ct_time(t, timed, rounds))
+        for (int p = 1; p < HL_PIPELINE_COUNT; p++)
+            printf(" %.1f (%.1f..%.1f) |", t[p].median, t[p].low, t[p].high);
+    printf("\n");
+}
+
+static void row(struct ct_scene *s, struct ct_scene *timed,
+                const struct hl_caps *caps, uint32_t n, uint32_t rounds)
 {
     struct ct_cost c[HL_PIPELINE_COUNT];
     bool has[HL_PIPELINE_COUNT];
@@ -45,8 +57,9 @@ static void row(struct ct_scene *s, const struct hl_caps *caps, uint32_t n)
     printf("| %s | %s | %u |", caps->backend, s->scene.name, n);
     for (int p = 1; p < HL_PIPELINE_COUNT; p++)
         printf(" %.2f (%.2f) |", c[p].ns * 1e-6, c[p].predicted_ns * 1e-6);
-    printf(" %s | %s | %.2f |\n", short_names[best],
+    printf(" %s | %s | %.2f |", short_names[best],
            short_names[c[0].plan.pipeline], c[0].ns / c[best].ns);
+    times(timed, n, rounds);
     if (getenv("HL_COUNTS"))
         for (int p = 1; p < HL_PIPELINE_COUNT; p++)
             printf("  %s: draws %u tris %llu geo %llu light %llu blend %llu "
@@ -60,22 +73,36 @@ static void row(struct ct_scene *s, const struct hl_caps *caps, uint32_t n)
                    (unsigned long long)c[p].lights, (int)c[p].plan.light_path);
 }
 
+static void run_on(const char *scene, const char *backend, uint32_t w,
+                   uint32_t h, uint32_t rounds)
+{
+    static const uint32_t lights[] = { 0, 1, 2, 4, 8, 16, 32, 64, 1u << 20 };
+    struct ct_scene s, timed;
+    struct hl_caps caps;
+    memset(&timed, 0, sizeof timed);
+    bool ok = caps_of(&caps, backend) && ct_open(&s, scene, "packemu", w, h);
+    if (ok && rounds)
+        ok = ct_open(&timed, scene, backend, w, h);
+    for (size_t i = 0; ok && i < sizeof lights / sizeof *lights; i++) {
+        if (i && lights[i - 1] >= s.all_lights)
+            break;
+        row(&s, &timed, &caps, lights[i] < s.all_lights ? lights[i]
+                                                        : s.all_lights,
+            rounds);
+    }
+    if (ok)
+        ct_close(&s);
+    if (ok && rounds)
+        ct_close(&timed);
+}
+
 static void run(const char *scene, uint32_t w, uint32_t h)
 {
-    static const uint32_t lights[] = { 0, 1, 2, 4, 8, 16, 32, 64, 1024 };
-    static const char *const backends[] = { "vulkan", "packemu" };
-    struct ct_scene s;
-    struct hl_caps caps;
-    if (ct_open(&s, scene, w, h))
-        for (int b = 0; b < 2; b++)
-            for (size_t i = 0; i < sizeof lights / sizeof *lights &&
-                 caps_of(&caps, backends[b]); i++) {
-                if (lights[i] > s.all_lights && lights[i - 1] >= s.all_lights)
-                    continue;
-                row(&s, &caps, lights[i] < s.all_lights ? lights[i]
-                                                        : s.all_lights);
-            }
-    ct_close(&s);
+    const char *rounds = getenv("ROUNDS");
+    unsigned n = rounds ? (unsigned)atoi(rounds) : 0;
+    n = n < CT_ROUNDS ? n : CT_ROUNDS;
+    run_on(scene, "vulkan", w, h, n);
+    run_on(scene, "packemu", w, h, n);
 }
 
 int main(int argc, char **argv)
@@ -87,8 +114,8 @@ int main(int argc, char **argv)
         return 2;
     printf("Counted cost, ms (predicted), %u x %u\n\n"
            "| machine | scene | lights | forward | multipass | inferred | "
-           "cheapest | auto | auto / cheapest |\n"
-           "|---|---|---|---|---|---|---|---|---|\n", w, h);
+           "cheapest | auto | auto / cheapest | ms forward | multipass | inferred "
+           "|\n|---|---|---|---|---|---|---|---|---|---|---|---|\n", w, h);
     for (int i = 2; i < argc; i++)
         run(argv[i], w, h);
     for (size_t i = 0; argc < 3 && i < sizeof all / sizeof *all; i++)

@@ -29,7 +29,7 @@ arrows() {
     verdict "$1"
 }
 
-core_public='core/(halflight|needs|plan|scene|frame|mesh|ids|stipple)\.h'
+core_public='core/(halflight|needs|plan|scene|frame|mesh|ids|stipple|stipple_mode|shadow_mesh)\.h'
 hal_public='hal/(hal|caps|backend|formats|profile)\.'
 arrows includes_shaders shaders 'shaders/'
 arrows includes_shared shaders/shared 'shaders/shared/'

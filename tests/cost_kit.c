@@ -2,16 +2,18 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include "platforms/cli/commands.h"
 #include "tests/cost_kit.h"
 
-bool ct_open(struct ct_scene *s, const char *name, uint32_t width,
-             uint32_t height)
+bool ct_open(struct ct_scene *s, const char *name, const char *backend,
+             uint32_t width, uint32_t height)
 {
-    char size[32], scene[64];
+    char size[32], scene[64], machine[16];
     snprintf(size, sizeof size, "%ux%u", width, height);
     snprintf(scene, sizeof scene, "%s", name);
-    char *argv[] = { "halflight", "render", scene, "--backend", "packemu",
+    snprintf(machine, sizeof machine, "%s", backend);
+    char *argv[] = { "halflight", "render", scene, "--backend", machine,
                      "--size", size, NULL };
     struct hlh_error error;
     memset(s, 0, sizeof *s);
@@ -97,22 +99,32 @@ static void weigh(struct ct_cost *c, const struct hl_cost_model *m)
                  (double)m->readback_ns + (double)m->sync_ns;
 }
 
-static bool draw(struct ct_cost *c, struct ct_scene *s,
-                 const struct hl_frame *f)
+/* *memory is the caller's to free, after the renderer. */
+static struct hl_renderer *make(const struct hl_plan *plan,
+                                const struct ct_scene *s, void **memory)
 {
     struct hl_renderer_desc d;
     struct hl_renderer *r = NULL;
-    struct hl_frame_stats stats;
-    struct hl_device *device = s->machine.device;
     memset(&d, 0, sizeof d);
-    d.plan = &c->plan;
+    d.plan = plan;
     d.surfaces = s->world.surfaces;
     d.n_surfaces = s->world.n_surfaces;
     d.max_items = s->world.n_items;
     d.max_lights = s->all_lights;
     d.readback = true;
-    void *memory = malloc(hl_renderer_bytes(&d));
-    bool ok = memory && hl_renderer_create(&r, device, &d, memory) == HL_OK;
+    *memory = malloc(hl_renderer_bytes(&d));
+    return *memory && hl_renderer_create(&r, s->machine.device, &d,
+                                         *memory) == HL_OK ? r : NULL;
+}
+
+static bool draw(struct ct_cost *c, struct ct_scene *s,
+                 const struct hl_frame *f)
+{
+    struct hl_frame_stats stats;
+    struct hl_device *device = s->machine.device;
+    void *memory;
+    struct hl_renderer *r = make(&c->plan, s, &memory);
+    bool ok = r != NULL;
     hl_submit(device, true);
     uint64_t before = hl_device_counts(device).triangles;
     ok = ok && hl_frame_draw(r, f, &stats) == HL_OK;
@@ -148,4 +160,67 @@ bool ct_count(struct ct_cost *c, struct ct_scene *s, enum hl_pipeline pipeline,
     c->predicted_ns = (double)c->plan.cost_ms * 1e6;
     weigh(c, &caps->cost);
     return true;
+}
+
+/* ---- times -------------------------------------------------------------- */
+
+static int by_size(const void *a, const void *b)
+{
+    double x, y;
+    memcpy(&x, a, sizeof x);
+    memcpy(&y, b, sizeof y);
+    return (x > y) - (x < y);
+}
+
+static double now_ms(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
+}
+
+struct side {                    /* a pipeline that is timed                 */
+    struct hl_frame frame;
+    struct hl_plan plan;
+    struct hl_renderer *r;
+    void *memory;
+    double ms[CT_ROUNDS];
+};
+
+static bool one_round(struct side *d, struct ct_scene *s, uint32_t round)
+{
+    double start = now_ms();
+    bool ok = hl_frame_draw(d->r, &d->frame, NULL) == HL_OK &&
+              hl_submit(s->machine.device, true) == HL_OK;
+    if (round > 0)
+        d->ms[round - 1] = now_ms() - start;
+    return ok;
+}
+
+bool ct_time(struct ct_times out[HL_PIPELINE_COUNT], struct ct_scene *s,
+             uint32_t rounds)
+{
+    struct side *side = calloc(HL_PIPELINE_COUNT, sizeof *side);
+    const struct hl_caps *caps = hl_device_caps(s->machine.device);
+    bool ok = side && rounds > 0 && rounds <= CT_ROUNDS;
+    for (int p = 1; p < HL_PIPELINE_COUNT && ok; p++) {
+        struct hl_needs needs;
+        s->options.pipeline = (enum hl_pipeline)p;
+        ok = hlc_plan_open(&side[p].frame, &needs, &side[p].plan, &s->world,
+                           caps, &s->options) == HLC_DONE &&
+             (side[p].r = make(&side[p].plan, s, &side[p].memory)) != NULL;
+    }
+    for (uint32_t i = 0; i <= rounds && ok; i++)
+        for (int p = 1; p < HL_PIPELINE_COUNT && ok; p++)
+            ok = one_round(&side[p], s, i);
+    for (int p = 1; p < HL_PIPELINE_COUNT && side; p++) {
+        hl_renderer_destroy(&side[p].r);
+        free(side[p].memory);
+        qsort(side[p].ms, rounds, sizeof(double), by_size);
+        out[p] = (struct ct_times){ side[p].ms[rounds / 2],
+                                    side[p].ms[rounds / 4],
+                                    side[p].ms[rounds * 3 / 4] };
+    }
+    free(side);
+    return ok;
 }

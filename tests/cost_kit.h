@@ -27,13 +27,20 @@ struct ct_cost {
     double predicted_ns;             /* plan.cost_ms                         */
 };
 
-/* A built-in scene at width x height. */
-bool ct_open(struct ct_scene *, const char *name, uint32_t width,
-             uint32_t height);
+/* A built-in scene at width x height; counting needs backend "packemu". */
+bool ct_open(struct ct_scene *, const char *name, const char *backend,
+             uint32_t width, uint32_t height);
 void ct_close(struct ct_scene *);
 /* The first n of the scene's lights; again with more if wanted. */
 void ct_lights(struct ct_scene *, uint32_t n);
 /* Plan by `caps` and draw once. False: no such plan. */
 bool ct_count(struct ct_cost *, struct ct_scene *, enum hl_pipeline,
               const struct hl_caps *caps);
+
+/* Wall time of frames of every pipeline, [0] not used, in turn: rounds of one
+ * frame each after a first one that is not counted. */
+enum { CT_ROUNDS = 31 };
+struct ct_times { double median, low, high; };   /* ms; quartiles            */
+bool ct_time(struct ct_times out[HL_PIPELINE_COUNT], struct ct_scene *,
+             uint32_t rounds);
 #endif

@@ -201,6 +201,60 @@ static void options_reach_the_plan(void **state)
     }
 }
 
+/* Words of an object, and numbers and flags as cJSON prints them. */
+static void features_reach_the_plan(void **state)
+{
+    static const struct { const char *line, *path, *want; } rows[] = {
+        { "blades --translucency 2x2", "plan.translucency", "\"2x2\"" },
+        { "blades", "plan.shadows", "null" },
+        { "blades", "needs.shadow_lights", "1" },
+        { "blades", "needs.shadow_points", "false" },
+        { "blades", "needs.blended_layers", "3" },
+        { "blades --shadow-lights all", "needs.shadow_lights", "11" },
+        { "blades --shadow-lights all", "needs.shadow_points", "true" },
+        { "blades --translucency forward", "plan.translucency",
+          "\"forward\"" },
+        { "blades --translucency forward", "plan.stipple", "null" },
+        { "blades --translucency 4x4", "plan.stipple.side", "4" },
+        { "blades --translucency 2x2 --stipple depth-free", "plan.stipple.mode",
+          "\"depth-free\"" },
+        { "blades --translucency 2x2 --stipple-filter bilinear",
+          "plan.stipple.filter",
+          "\"bilinear\"" },
+        { "blades --shadows volumes", "plan.shadows.kind", "\"volumes\"" },
+        { "blades --shadows volumes", "plan.infinite_far", "true" },
+        { "blades --shadows maps --shadow-size 512", "plan.shadows.size",
+          "512" },
+        { "fig8", "plan.translucency", "null" },
+        { "fig8 --shadows maps", "plan.shadows", "null" },
+        { "fig8 --light-path volumes --volume-texels 77",
+          "plan.volume_texels", "77" },
+        { "fig8 --fill bilinear", "plan.dsf.fill", "\"bilinear\"" },
+        { "fig8 --fetch bilinear", "plan.dsf.fetch", "\"bilinear\"" },
+        { "fig8 --samples 4", "plan.dsf.centroid", "true" },
+        { "fig8 --samples 4 --centroid off", "plan.dsf.centroid", "false" },
+        { "fig8", "plan.motion", "false" },
+        { "fig8 --motion", "plan.motion", "true" },
+        { "decals", "needs.decals", "true" },
+        { "decals", "plan.decals", "\"blend_normals\"" },
+        { "fence", "needs.blended", "true" },
+        { "fence --mask test", "needs.blended", "false" },
+    };
+    static struct tool_run r;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        char line[256];
+        snprintf(line, sizeof line, "plan --backend null --pipeline inferred "
+                 "--json - %s", rows[i].line);
+        tool_done(&r, state, line);
+        cJSON *j = tool_json(r.out);
+        char *is = cJSON_PrintUnformatted(tool_at(j, rows[i].path));
+        if (!is || strcmp(is, rows[i].want))
+            fail_msg("%s: %s is %s", line, rows[i].path, is);
+        cJSON_free(is);
+        cJSON_Delete(j);
+    }
+}
+
 static void devices_describe_null(void **state)
 {
     static struct tool_run r;
@@ -295,6 +349,7 @@ int main(int argc, char **argv)
         IN_DIRECTORY(bad_pictures_are_exit_two),
         IN_DIRECTORY(a_plan_gives_its_reasons),
         IN_DIRECTORY(options_reach_the_plan),
+        IN_DIRECTORY(features_reach_the_plan),
         IN_DIRECTORY(devices_describe_null),
         IN_DIRECTORY(render_writes_what_is_asked),
         IN_DIRECTORY(a_failed_render_leaves_nothing),

@@ -41,7 +41,7 @@ static void auto_is_near_the_cheapest(void **state)
     ck_lavapipe(&caps[0]);
     for (size_t k = 0; k < sizeof scenes / sizeof *scenes; k++) {
         struct ct_scene s;
-        assert_true(ct_open(&s, scenes[k], W, H));
+        assert_true(ct_open(&s, scenes[k], "packemu", W, H));
         caps[1] = *hl_device_caps(s.machine.device);
         for (int m = 0; m < 2; m++)
             for (size_t i = 0; i < sizeof some / sizeof *some; i++)
@@ -59,7 +59,7 @@ static void no_light_costs_nothing(void **state)
     struct ct_scene s;
     struct ct_cost forward, inferred;
     (void)state;
-    assert_true(ct_open(&s, "fig8", W, H));
+    assert_true(ct_open(&s, "fig8", "packemu", W, H));
     ct_lights(&s, 0);
     const struct hl_caps *caps = hl_device_caps(s.machine.device);
     assert_true(ct_count(&forward, &s, HL_PIPELINE_FORWARD_MULTIPASS, caps));
@@ -79,7 +79,7 @@ static void counting_repeats(void **state)
     struct ct_scene s;
     struct ct_cost a, b;
     (void)state;
-    assert_true(ct_open(&s, "many", W, H));
+    assert_true(ct_open(&s, "many", "packemu", W, H));
     const struct hl_caps *caps = hl_device_caps(s.machine.device);
     assert_true(ct_count(&a, &s, HL_PIPELINE_INFERRED, caps));
     assert_true(ct_count(&b, &s, HL_PIPELINE_INFERRED, caps));

@@ -263,6 +263,33 @@ static void decals_are_lit_by_their_normals(void **state)
         pictures_agree(backend, profiles[p]);
 }
 
+/* A decal with the wall's own normal and colour cannot be seen: it filters the
+ * wall's samples as the wall does, though their region is another. Light falls
+ * off, so that one sample in place of four would show; a rounding of half
+ * floats is allowed for, as a blend may cut. */
+static void decals_take_the_light_below(void **state)
+{
+    float *picture[2];
+    begin(ck_machine(state), 1);
+    scene.item[DECAL].vertex[0] = scene.vertex;
+    scene.frame.n_lights = 0;
+    memset(scene.light, 0, sizeof scene.light);
+    fk_light(&scene, 0.3f, 0.2f, 1, 4);
+    for (int i = 0; i < 2; i++) {
+        struct fk_run run;
+        scene.item[DECAL].count = i ? 6 : 0;
+        draw(&run, HL_PIPELINE_INFERRED);
+        assert_int_equal(run.stats.decals, i);
+        picture[i] = texels(&run, hl_renderer_output(run.r));
+        fk_destroy(&run);
+    }
+    assert_true(fk_at(picture[0], 80, 45)[0] > 0.5f);
+    assert_true(fk_difference(picture[0], picture[1], N) <= 1.0 / 1024);
+    free(picture[0]);
+    free(picture[1]);
+    end();
+}
+
 /* ---- plans -------------------------------------------------------------- */
 
 /* One target that cannot blend rules it out for all. */
@@ -304,6 +331,7 @@ int main(void)
         DRAWN(decals_change_normals_by_their_alpha),
         DRAWN(packed_normals_make_decals_a_layer),
         DRAWN(decals_are_lit_by_their_normals),
+        DRAWN(decals_take_the_light_below),
         cmocka_unit_test(every_target_of_the_pass_must_blend),
     };
     return cmocka_run_group_tests_name("decals", tests, NULL, NULL);

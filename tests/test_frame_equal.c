@@ -9,19 +9,32 @@
 
 enum { SIDE = 96, AREA = 1024 };
 
-static const struct { const char *name; enum hl_shader stage; } variants[] = {
-    { "id", HL_SHADER_MESH_ID_VERT },
-    { "uv and id", HL_SHADER_MESH_UV_ID_VERT },
-    { "geometry", HL_SHADER_MESH_GBUFFER_VERT },
-    { "geometry, full", HL_SHADER_MESH_GBUFFER_FULL_VERT },
-    { "material", HL_SHADER_MESH_MATERIAL_VERT },
-    { "own", HL_SHADER_MESH_OWN_VERT },
-    { "forward", HL_SHADER_MESH_FORWARD_VERT },
-    { "forward, full", HL_SHADER_MESH_FORWARD_FULL_VERT },
-    { "material, centroid", HL_SHADER_MESH_MATERIAL_CENTROID_VERT },
-    { "uv and id, centroid", HL_SHADER_MESH_UV_ID_CENTROID_VERT },
-    { "geometry, motion", HL_SHADER_MESH_GBUFFER_MOTION_VERT },
-    { "geometry, full, motion", HL_SHADER_MESH_GBUFFER_FULL_MOTION_VERT },
+/* Each with a stage that reads all that it writes, so that nothing of it is
+ * left out. */
+static const struct {
+    const char *name;
+    enum hl_shader vertex, fragment;
+} variants[] = {
+    { "id", HL_SHADER_MESH_ID_VERT, HL_SHADER_COUNT_FRAG },
+    { "uv and id", HL_SHADER_MESH_UV_ID_VERT,
+      HL_SHADER_MATERIAL_FULL_TAPS_FRAG },
+    { "geometry", HL_SHADER_MESH_GBUFFER_VERT, HL_SHADER_GBUFFER_PLAIN_FRAG },
+    { "geometry, full", HL_SHADER_MESH_GBUFFER_FULL_VERT,
+      HL_SHADER_GBUFFER_FULL_FRAG },
+    { "material", HL_SHADER_MESH_MATERIAL_VERT,
+      HL_SHADER_MATERIAL_PLAIN_TAPS_FRAG },
+    { "own", HL_SHADER_MESH_OWN_VERT, HL_SHADER_GBUFFER_FULL_FRAG },
+    { "forward", HL_SHADER_MESH_FORWARD_VERT, HL_SHADER_FORWARD_PLAIN_FRAG },
+    { "forward, full", HL_SHADER_MESH_FORWARD_FULL_VERT,
+      HL_SHADER_FORWARD_FULL_FRAG },
+    { "material, centroid", HL_SHADER_MESH_MATERIAL_CENTROID_VERT,
+      HL_SHADER_MATERIAL_PLAIN_TAPS_CENTROID_FRAG },
+    { "uv and id, centroid", HL_SHADER_MESH_UV_ID_CENTROID_VERT,
+      HL_SHADER_MATERIAL_FULL_TAPS_CENTROID_FRAG },
+    { "geometry, motion", HL_SHADER_MESH_GBUFFER_MOTION_VERT,
+      HL_SHADER_GBUFFER_PLAIN_MOTION_FRAG },
+    { "geometry, full, motion", HL_SHADER_MESH_GBUFFER_FULL_MOTION_VERT,
+      HL_SHADER_GBUFFER_FULL_MOTION_FRAG },
 };
 
 enum { VARIANTS = sizeof variants / sizeof *variants };
@@ -84,14 +97,13 @@ static void end(struct stand *s)
     fk_end(&s->scene);
 }
 
-static hl_prog program(struct stand *s, enum hl_shader vertex, bool equal,
-                       float shift)
+static hl_prog program(struct stand *s, int variant, bool equal, float shift)
 {
     struct hl_prog_desc p = {
-        .vertex = { vertex, NULL },
-        .fragment = { HL_SHADER_COUNT_FRAG, NULL }, .n_colors = 1,
+        .vertex = { variants[variant].vertex, NULL },
+        .fragment = { variants[variant].fragment, NULL }, .n_colors = 1,
         .color = { HL_FORMAT_R32_FLOAT }, .depth = HL_FORMAT_D32_FLOAT,
-        .blend = HL_BLEND_ADD, .depth_write = !equal,
+        .depth_write = !equal,
         .depth_test = equal ? HL_COMPARE_EQUAL : HL_COMPARE_GREATER,
         .n_specs = shift != 0 ? 2 : 0 };
     hl_prog out;
@@ -106,6 +118,7 @@ static hl_prog program(struct stand *s, enum hl_shader vertex, bool equal,
 
 static struct hl_draw draw_of(struct stand *s, hl_prog prog)
 {
+    static const struct hl_texture_binding none[HL_TEX_MESH_COUNT];
     struct hl_draw d = { .prog = prog };
     const struct hl_item *it = &s->scene.item[0];
     d.vertex[0] = it->vertex[0];
@@ -118,13 +131,18 @@ static struct hl_draw draw_of(struct stand *s, hl_prog prog)
         d.uniform[i].offset = i * AREA;
         d.uniform[i].bytes = i == HL_SLOT_LIGHTS ? HL_LIGHTS_BYTES : AREA;
     }
+    d.textures = none;
+    d.n_textures = HL_TEX_MESH_COUNT;
     return d;
 }
 
-/* First one variant as it is nearest, which counts the layers that pass one
- * after another; then the other where depth is equal, on a new count. */
-static void two_passes(struct stand *s, enum hl_shader first,
-                       enum hl_shader second, float shift, float *count)
+/* What no stage here writes into the first channel. */
+#define NOTHING (-1000.0f)
+
+/* First one variant as it is nearest; then the other where depth is equal, on
+ * a new picture. */
+static void two_passes(struct stand *s, int first, int second, float shift,
+                       float *count)
 {
     hl_prog a = program(s, first, false, shift);
     hl_prog b = program(s, second, true, shift);
@@ -134,6 +152,7 @@ static void two_passes(struct stand *s, enum hl_shader first,
                                 .draws = &draw[i], .n_draws = 1 };
         pass.color[0].tex = s->color;
         pass.color[0].load = HL_LOAD_CLEAR;
+        pass.color[0].clear[0] = NOTHING;
         pass.depth.tex = s->depth;
         pass.depth.load = i ? HL_LOAD_KEEP : HL_LOAD_CLEAR;
         pass.depth_read_only = i == 1;
@@ -152,11 +171,11 @@ static uint32_t check_pair(struct stand *s, int i, int k, float shift)
 {
     static float count[2 * SIDE * SIDE];
     uint32_t covered = 0, holes = 0;
-    two_passes(s, variants[i].stage, variants[k].stage, shift, count);
+    two_passes(s, i, k, shift, count);
     for (int p = 0; p < SIDE * SIDE; p++) {
-        bool there = count[p] > 0;
+        bool there = count[p] != NOTHING;
         covered += there;
-        holes += there != (count[SIDE * SIDE + p] > 0);
+        holes += there != (count[SIDE * SIDE + p] != NOTHING);
     }
     if (holes)
         fail_msg("%s after %s: %u holes of %u", variants[k].name,

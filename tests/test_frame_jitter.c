@@ -52,16 +52,23 @@ static void floor_and_wall(struct ck_machine *m, enum hl_light_path path)
     uint64_t seed = 11;
     begin(m, LIGHT_W, LIGHT_H);
     scene.needs.light_path = path;
+    scene.needs.tile = 8;
     scene.needs.light_format = HL_FORMAT_RGBA32_FLOAT;
     fk_room(&scene, 0, &seed);
     scene.frame.n_items = 2;
-    for (int i = 0; i < 24; i++) {
-        bool low = i % 2;
+    /* Half of them lie in the surface, but for a centimetre: they light as
+     * much of it as their bounds enclose. */
+    for (int i = 0; i < 40; i++) {
+        bool low = i % 2, flat = i % 4 < 2;
         float x = (float)ck_between(&seed, -11, 11);
-        struct hl_light *l = low
-            ? fk_light(&scene, x, -2.2f, (float)ck_between(&seed, -7, 6), 1.3f)
-            : fk_light(&scene, x, (float)ck_between(&seed, -3, 9), -7.0f, 2);
-        l->color[i % 3] = 0.5f;
+        float z = (float)ck_between(&seed, -7, 6);
+        float y = (float)ck_between(&seed, -3, 9);
+        struct hl_light *l = low ? fk_light(&scene, x, flat ? -2.99f : -2.2f,
+                                            z, 1.3f)
+                                 : fk_light(&scene, x, y, flat ? -7.99f : -7,
+                                            2);
+        for (int c = 0; c < 3; c++)
+            l->color[c] = c == i % 3 ? 0.5f : 0.0f;
     }
 }
 

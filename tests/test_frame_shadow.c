@@ -281,14 +281,16 @@ static void draw_bare(struct rig *g, uint32_t which, struct hlc_texels *out)
     memcpy(s->light, lights, sizeof lights);
 }
 
-struct seen { uint32_t dark, lit, unsure; };
+/* `of`: dark texels of an item, and all others of it that are sure. */
+struct seen { uint32_t dark, lit, unsure, of[FK_ITEMS][2]; };
 
 /* Each texel has the bits of the frame with just those lights that reach it. */
 static struct seen check(struct rig *g, const char *name)
 {
     uint32_t n = g->s.frame.n_lights, wrong = 0, cast = 0;
     struct hlc_texels got, bare[4];
-    struct seen seen = { 0, 0, 0 };
+    struct seen seen;
+    memset(&seen, 0, sizeof seen);
     draw(g, &got);
     for (uint32_t k = 0; k < n; k++)
         cast += g->s.light[k].shadow;
@@ -314,7 +316,9 @@ static struct seen check(struct rig *g, const char *name)
         const uint8_t *b = bare[which].bytes + (size_t)i * size;
         const uint8_t *all = bare[(1u << n) - 1].bytes + (size_t)i * size;
         /* Dark where it would be lit. */
-        seen.dark += memcmp(b, all, size) != 0;
+        bool dark = memcmp(b, all, size) != 0;
+        seen.dark += dark;
+        seen.of[it - g->s.item][!dark]++;
         seen.lit += memcmp(b, bare[0].bytes + (size_t)i * size, size) != 0;
         wrong += memcmp(a, b, size) != 0;
     }
@@ -443,6 +447,17 @@ static void caster_behind(struct rig *g)
     look(g, eye, at, 0.1f, 100);
 }
 
+/* Three that overlap, behind one another. */
+static void put_panes(struct rig *g)
+{
+    const float scale[3] = { 4, 2.4f, 1 };
+    for (int i = 0; i < 3; i++) {
+        const float at[3] = { 0.3f * (float)i, -0.8f, 0.5f - 1.2f * (float)i };
+        struct hl_item *it = put(g, FK_QUAD, FK_BLENDED, scale, 0, at);
+        fk_material(&g->s, it)->base[3] = 0.5f;
+    }
+}
+
 static const struct {
     const char *name;
     void (*put)(struct rig *);
@@ -477,7 +492,7 @@ static void clear_scene(struct rig *g)
 
 /* Planned for the most that any case has. */
 static void open_rig(struct rig *g, const char *backend, const char *profile,
-                     bool volumes, uint32_t indices)
+                     bool volumes, bool translucent, uint32_t indices)
 {
     memset(g, 0, sizeof *g);
     ck_open_as(&g->m, backend, profile);
@@ -485,6 +500,9 @@ static void open_rig(struct rig *g, const char *backend, const char *profile,
     prepare_meshes(g);
     clear_scene(g);
     sun_and_spot(g);
+    if (translucent)
+        put_panes(g);
+    g->s.needs.translucency = HL_TRANSLUCENCY_2X2;
     g->s.needs.light_width = LW;
     g->s.needs.light_height = LH;
     g->s.needs.shadows = HL_SHADOWS_VOLUMES;
@@ -493,7 +511,7 @@ static void open_rig(struct rig *g, const char *backend, const char *profile,
         g->s.needs.light_path = HL_LIGHT_PATH_VOLUMES;
     g->s.needs.volume_texels = 1;
     fk_prepare(&g->run, &g->s, HL_PIPELINE_INFERRED);
-    g->run.desc.n_surfaces = FK_BLENDED;
+    g->run.desc.n_surfaces = translucent ? FK_SURFACES : FK_BLENDED;
     g->run.desc.shadow_indices = indices;
     assert_int_equal(fk_create(&g->run), HL_OK);
 }
@@ -515,7 +533,7 @@ static void light_ends_at_what_hides_it(void **state)
     const char *backend = ck_machine(state)->backend->name;
     static struct rig g;
     for (int i = 0; i < 4; i++) {
-        open_rig(&g, backend, profiles[i], i % 2 == 1, 0);
+        open_rig(&g, backend, profiles[i], i % 2 == 1, false, 0);
         for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
             clear_scene(&g);
             cases[k].put(&g);
@@ -530,6 +548,34 @@ static void light_ends_at_what_hides_it(void **state)
     }
 }
 
+/* ---- translucent surfaces ----------------------------------------------- */
+
+/* Each layer is dark where a post before all of them hides the light from
+ * it, which is elsewhere on each; and casts nothing on those behind. */
+static void stippled_layers_are_dark_each(void **state)
+{
+    const char *backend = ck_machine(state)->backend->name;
+    static struct rig g;
+    const float post[3] = { 0.5f, 1.5f, 0.2f }, at[3] = { -1.2f, -1, 1.5f };
+    for (int i = 0; i < 4; i++) {
+        open_rig(&g, backend, profiles[i], false, true, 0);
+        assert_int_equal(g.run.plan.stipple, 2);
+        clear_scene(&g);
+        put(&g, FK_BOX, FK_PLAIN, post, 0.1, at);
+        put_panes(&g);
+        put_light(&g, -3, 0.5f, 4);
+        struct seen n = check(&g, "panes");
+        assert_int_equal(g.run.stats.stippled, 3);
+        for (int k = 3; k < 6; k++) {
+            if (i == 0)
+                print_message("pane %d: %u dark, %u other\n", k, n.of[k][0],
+                              n.of[k][1]);
+            assert_true(n.of[k][0] >= 20 && n.of[k][1] >= 60);
+        }
+        close_rig(&g);
+    }
+}
+
 /* ---- room --------------------------------------------------------------- */
 
 /* A box's volume has 6 lit triangles or fewer: 18 indices a cap and 36 of its
@@ -539,14 +585,14 @@ static void too_little_room_only_waits(void **state)
     const char *backend = ck_machine(state)->backend->name;
     static struct rig g;
     struct hlc_texels at_once, waited;
-    open_rig(&g, backend, "native", false, 0);
+    open_rig(&g, backend, "native", false, false, 0);
     clear_scene(&g);
     two_lights(&g);
     draw(&g, &at_once);
     assert_int_equal(g.run.stats.shadow_casters, 4);
     uint32_t triangles = g.run.stats.shadow_triangles;
     close_rig(&g);
-    open_rig(&g, backend, "native", false, 72);
+    open_rig(&g, backend, "native", false, false, 72);
     clear_scene(&g);
     two_lights(&g);
     draw(&g, &waited);
@@ -557,7 +603,7 @@ static void too_little_room_only_waits(void **state)
     hlc_texels_free(&at_once);
     hlc_texels_free(&waited);
     close_rig(&g);
-    open_rig(&g, backend, "native", false, 20);
+    open_rig(&g, backend, "native", false, false, 20);
     clear_scene(&g);
     two_lights(&g);
     CK_REFUSED(&g.m, hl_frame_draw(g.run.r, &g.s.frame, NULL), HL_ERR_LIMIT,
@@ -607,6 +653,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         DRAWN(light_ends_at_what_hides_it),
+        DRAWN(stippled_layers_are_dark_each),
         DRAWN(too_little_room_only_waits),
         cmocka_unit_test(only_inferred_plans_have_shadows),
     };

@@ -223,6 +223,44 @@ static void rectangles_light_alike(void **state)
     ck_close(&m);
 }
 
+/* ---- beyond far --------------------------------------------------------- */
+
+/* What is partly nearer than far is drawn to its end: a floor that leaves the
+ * view at 12 m and is seen up to 22 m, lit there too. The filter's depths end
+ * at far, so that beyond it no tap is told from another by depth; on one plane
+ * that is one light, but for a tap in 0.3 % that the other frame rejects. */
+static void what_is_beyond_far_is_lit(void **state)
+{
+    struct ck_machine *m = ck_machine(state);
+    static struct fk_scene s;
+    float *picture[2];
+    uint32_t off = 0, lit = 0;
+    for (int i = 0; i < 2; i++) {
+        fk_begin(&s, m);
+        struct hl_item *it = fk_add(&s, FK_QUAD, FK_PLAIN, 0, -3, 0, 12);
+        it->world[5] = it->world[10] = 0;
+        it->world[6] = -12;
+        it->world[9] = 12;
+        fk_light(&s, 0, 0, -9, 14);
+        s.frame.camera.far = i ? 12.0f : 100.0f;
+        s.needs.light_width = LW;
+        s.needs.light_height = LH;
+        s.needs.light_path = HL_LIGHT_PATH_VOLUMES;
+        picture[i] = fk_draw(&s, HL_PIPELINE_INFERRED, HL_ROLE_NONE);
+        fk_end(&s);
+    }
+    for (int i = 0; i < FK_W * FK_H; i++) {
+        double e = fk_difference(picture[0] + 4 * i, picture[1] + 4 * i, 1);
+        lit += picture[0][4 * i] > 0 ? 1 : 0;
+        off += e <= 0.01 ? 0 : 1;
+    }
+    print_message("%u of %u differ\n", off, lit);
+    assert_true(lit > 1000);
+    assert_true(off * 300 <= lit);
+    free(picture[0]);
+    free(picture[1]);
+}
+
 /* ---- choice ------------------------------------------------------------- */
 
 static void plans_say_why(void **state)
@@ -272,6 +310,7 @@ int main(void)
         DRAWN(volumes_reach_beyond_far),
         DRAWN(borders_may_graze),
         DRAWN(rectangles_light_alike),
+        DRAWN(what_is_beyond_far_is_lit),
         cmocka_unit_test(plans_say_why),
     };
     return cmocka_run_group_tests_name("light volumes of frames", tests, NULL,

@@ -93,10 +93,6 @@ static void strips_keep_their_light(void **state)
     s.needs.light_width = FK_W;
     s.needs.light_height = FK_H;
     s.needs.fill = HL_FILL_BILINEAR;
-    /* Of a place in a pixel, the strip's tap is up to 7/8 of one away, and no
-     * more of the slope is let pass: a slope from place to place would be too
-     * little or too much. */
-    s.needs.dsf_k = 0.9f;
     uint32_t n = 1, counts = 0;
     while ((n = next_count(&s, n)) != 0) {
         s.needs.samples = n;

@@ -49,13 +49,20 @@ static void everything_has_a_name(void **state)
         check_name(hlc_role_name((enum hl_role)i));
     for (int i = 0; i < HL_PASS_ROLE_COUNT; i++)
         check_name(hlc_pass_name((enum hl_pass_role)i));
-    for (int i = 0; i <= HL_LIGHT_PATH_LISTS; i++)
+    for (int i = 0; i <= HL_TRANSLUCENCY_4X4; i++)
+        assert_string_not_equal(
+            hlc_translucency_name((enum hl_translucency)i), "?");
+    for (int i = 0; i <= HL_STIPPLE_BY_DEPTH_FREE; i++)
+        check_name(hlc_stipple_name((enum hl_stipple_mode)i));
+    for (int i = 0; i <= HL_SHADOWS_MAPS; i++)
+        check_name(hlc_shadows_name((enum hl_shadows)i));
+    for (int i = 0; i <= HL_LIGHT_PATH_VOLUMES; i++)
         check_name(hlc_light_path_name((enum hl_light_path)i));
     for (int i = 0; i <= HL_BLEND_SHIFT; i++)
         check_name(hlc_blend_name((enum hl_blend)i));
     for (int i = 0; i <= HL_COMPARE_ALWAYS; i++)
         check_name(hlc_compare_name((enum hl_compare)i));
-    for (int i = 0; i <= HL_PER_OBJECT_LIGHTS; i++)
+    for (int i = 0; i <= HL_PER_SHADOW_LIGHT; i++)
         check_name(hlc_repeat_name((enum hl_repeat)i));
     for (uint32_t i = 0; i <= HL_DSF_EXACT; i++)
         check_name(hlc_dsf_name(i));
@@ -107,6 +114,10 @@ static void every_reason_is_a_sentence_that_fits(void **state)
         hlc_reason_text(&p, 0, text, sizeof text);
         assert_true(strlen(text) > 15 && strlen(text) < 256);
         assert_null(strpbrk(text, "#$=@&~^*!?"));
+        /* Of those that say something else where argument 0 is 0. */
+        p.reason[0].arg[0] = 1;
+        hlc_reason_text(&p, 0, text, sizeof text);
+        assert_true(strlen(text) > 15 && strlen(text) < 256);
     }
 }
 
@@ -142,6 +153,16 @@ static void arguments_are_shown_as_what_they_are(void **state)
         { HL_WHY_COLOR_FORMAT, { HL_FORMAT_RGBA16_FLOAT, 7, 0.0039f, 1 },
           "the frame is in RGBA16_FLOAT: after 7 blends at most 0.39 % off, "
           "where the need is 1 codes of 255" },
+        { HL_WHY_STIPPLED, { 2, 40.5f, 12.25f, 0 },
+          "translucent surfaces are stippled into the G-buffer by blocks of 2 "
+          "x 2 texels and lit with all else: predicted 12.2 ns a translucent "
+          "pixel, 40.5 drawn forward" },
+        { HL_WHY_FETCH, { 1, 3, 2, 0 },
+          "light is fetched filtered where no tap is rejected, else by four "
+          "taps: predicted 2 ns a pixel, four always 3" },
+        { HL_WHY_FETCH, { 0, 3, 4, 0 },
+          "light is fetched by four taps: predicted 3 ns a pixel, filtered "
+          "where none is rejected 4" },
         { HL_WHY_LIGHT_SIZE_ASKED, { 1600, 900, 12800, 7200 },
           "a light buffer of 1600 x 900 under 12800 x 7200 was asked for" },
     };

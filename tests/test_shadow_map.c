@@ -431,6 +431,27 @@ static void lifts_are_bounded(void **state)
     assert_true(most <= bound + 1e-3 && most > bound * 0.98);
 }
 
+/* A step of stored depth moves the point by no more than is told; stages'
+ * slanted rays take half as much again, which is told too. */
+static void depth_steps_are_bounded(void **state)
+{
+    uint64_t seed = 10;
+    const double n = 0.1, f = 1000, a = -n * f / (f - n), b = -f / (f - n);
+    (void)state;
+    for (int i = 0; i < 2000; i++) {
+        uint32_t bits = i % 2 ? 24 : 16;
+        struct hl_shadow_error e = hl_shadow_depth_error(bits, (float)a);
+        double z = ck_between(&seed, 0.2, i % 2 ? 900 : 100);
+        double step = 1 / pow(2, bits), moved = a / (a / z - b + step + b) - z;
+        double told = (double)e.x * z * z + (double)e.y * z;
+        /* To the first order: its square is a few hundredths of it here. */
+        assert_true(fabs(moved) * 1.5 <= told * 1.1);
+        assert_true(told < 2 * fabs(moved) + 1e-5 * z);
+    }
+    assert_true(hl_shadow_depth_error(0, (float)a).x == 0);
+    assert_true(hl_shadow_depth_error(32, (float)a).x == 0);
+}
+
 /* ---- kernel ------------------------------------------------------------- */
 
 static void the_kernel_sums_to_one(void **state)
@@ -472,6 +493,7 @@ int main(void)
         cmocka_unit_test(directional_maps_move_by_whole_texels),
         cmocka_unit_test(planes_do_not_shade_themselves),
         cmocka_unit_test(lifts_are_bounded),
+        cmocka_unit_test(depth_steps_are_bounded),
         cmocka_unit_test(the_kernel_sums_to_one),
         cmocka_unit_test(wide_spots_need_six_maps),
     };

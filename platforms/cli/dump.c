@@ -132,13 +132,13 @@ static void as_specular(const struct hlc_render *r, const float v[4],
     rgb[0] = rgb[1] = rgb[2] = v[3] * r->plan.light_scale;
 }
 
-/* Saturates at a sixteenth of the screen. */
+/* Saturates at a 64th of the screen. */
 static void as_motion(const struct hlc_render *r, const float v[4],
                       float rgb[3])
 {
     (void)r;
-    hlc_show3(rgb, 0.5f + 4 * hl_motion_decode(v[0]),
-              0.5f - 4 * hl_motion_decode(v[1]), 0.5f);
+    hlc_show3(rgb, 0.5f + 16 * hl_motion_decode(v[0]),
+              0.5f - 16 * hl_motion_decode(v[1]), 0.5f);
 }
 
 static void as_pixels(const struct hlc_render *r, const float v[4],
@@ -149,12 +149,14 @@ static void as_pixels(const struct hlc_render *r, const float v[4],
     rgb[2] = 0;
 }
 
-/* Device depth to metres, as core/frame_data.c lays it out. */
+/* Device depth to metres, as core/frame_view.c lays it out; what lies beyond
+ * far, without a far plane, counts as there. */
 static void as_z(const struct hlc_render *r, const float v[4], float rgb[3])
 {
     double n = r->near, f = r->far, d = (double)v[0];
-    double z = r->plan.reversed_depth ? n * f / (d * (f - n) + n)
-                                      : n * f / (f - d * (f - n));
+    double e = r->plan.reversed_depth ? d : 1 - d;
+    double z = !r->plan.infinite_far ? n * f / (e * (f - n) + n)
+               : e > n / f ? n / e : f;
     rgb[0] = rgb[1] = rgb[2] = (float)z;
 }
 
@@ -188,8 +190,7 @@ static const struct target_file {
     { HL_ROLE_EXPONENT, "exponent.pfm", "specular exponent, 1 to 256",
       as_exponent, false },
     { HL_ROLE_MOTION, "motion.png", "screen motion: grey is still, red to the "
-      "right, green down; a sixteenth of the screen is the most", as_motion,
-      false },
+      "right, green down; a 64th of the screen is the most", as_motion, false },
     { HL_ROLE_MOTION, "motion.pfm", "the same in pixels right and down",
       as_pixels, false },
     { HL_ROLE_LIGHT_DEPTH, "light_depth.png", "depth buffer at L-buffer size, "

@@ -111,6 +111,19 @@ static bool dump_rejects(struct hlc_dump *d)
     return ok;
 }
 
+/* Neighbouring patterns far apart: hues by the golden angle. */
+static void show_pattern(float rgb[3], uint32_t pattern)
+{
+    float hue = (float)(pattern - 1) * 0.618034f;
+    float c[3];
+    for (int k = 0; k < 3; k++) {
+        float t = hue + (float)k / 3;
+        t = fabsf((t - floorf(t)) * 6 - 3) - 1;
+        c[k] = 0.15f + 0.85f * (t < 0 ? 0 : t > 1 ? 1 : t);
+    }
+    hlc_show3(rgb, c[0], c[2], c[1]);
+}
+
 static bool dump_stipple(struct hlc_dump *d)
 {
     const struct hlc_inside *in = &d->r->inside;
@@ -120,10 +133,11 @@ static bool dump_stipple(struct hlc_dump *d)
     if (!p.rgb)
         return hlh_fail(d->error, "stipple.png", "out of memory");
     for (size_t i = 0; i < n; i++)
-        if (in->stipple[i] == 1)
-            hlc_show3(p.rgb + 3 * i, 0.3f, 0.3f, 0.3f);
+        if (in->stipple[i] > 1)
+            show_pattern(p.rgb + 3 * i, in->stipple[i] - 1u);
         else
-            hlc_show_id(p.rgb + 3 * i, in->stipple[i]);
+            hlc_show3(p.rgb + 3 * i, 0.25f * in->stipple[i],
+                      0.25f * in->stipple[i], 0.25f * in->stipple[i]);
     bool ok = hlc_dump_picture(d, "stipple.png", "who is in each L-buffer "
                                "texel: black nothing, grey opaque, a colour a "
                                "pattern", &p, 0);

@@ -20,6 +20,18 @@ static int refused(const struct hlc_render *r, const char *what,
 
 /* ---- making ------------------------------------------------------------ */
 
+/* Room for the largest object's volume, where the default has not that. */
+static uint32_t shadow_indices(const struct hlc_render *r)
+{
+    uint32_t most = 0;
+    for (uint32_t i = 0; r->world.shadows && i < r->scene.n_meshes; i++) {
+        const struct hl_shadow_mesh *m = &r->world.shadows[i].mesh;
+        uint32_t n = 6 * (m->n_faces + m->max_sides);
+        most = n > most ? n : most;
+    }
+    return most > 1u << 20 ? most : 0;
+}
+
 static int make_renderer(struct hlc_render *r)
 {
     struct hl_renderer_desc d;
@@ -30,6 +42,7 @@ static int make_renderer(struct hlc_render *r)
     d.max_items = r->world.n_items ? r->world.n_items : 1;
     d.max_lights = r->world.n_lights ? r->world.n_lights : 1;
     d.readback = true;
+    d.shadow_indices = shadow_indices(r);
     size_t bytes = hl_renderer_bytes(&d);
     r->memory = bytes ? malloc(bytes) : NULL;
     if (!r->memory)

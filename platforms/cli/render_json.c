@@ -166,6 +166,10 @@ bool hlc_render_json(const struct hlc_render *r, struct hlh_error *error)
     uint32_t lh = device ? r->plan.light_height : 0;
     hlc_json_scene(tree, &r->scene, r->near, r->far);
     hlc_json_size(tree, "size", r->o->width, r->o->height);
+    if (r->o->part_width)
+        hlc_json_size(tree, "part", r->o->part_width, r->o->part_height);
+    else
+        cJSON_AddNullToObject(tree, "part");
     hlc_json_size(tree, "light_size", lw ? lw : r->o->width,
                   lh ? lh : r->o->height);
     hlc_json_uint(tree, "samples", r->o->supersample

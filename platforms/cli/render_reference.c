@@ -34,7 +34,8 @@ static void options_of(struct hlr_options *out, const struct hlc_render *r,
 {
     const struct hlc_options *o = r->o;
     *out = (struct hlr_options){
-        .width = o->width, .height = o->height, .samples = o->samples,
+        .width = r->picture.width, .height = r->picture.height,
+        .jitter = { o->jitter[0], o->jitter[1] }, .samples = o->samples,
         .grid = o->supersample, .normal_maps = !o->no_normal_maps,
         .no_specular = o->no_specular, .near = o->near, .far = o->far,
         .shadows = !o->has_shadows || o->shadows != HL_SHADOWS_NONE,
@@ -48,12 +49,14 @@ int hlc_render_reference(struct hlc_render *r)
     struct progress p = { hlc_now_ms(), 0, false };
     struct hlr_options options;
     struct hlr_stats stats;
-    size_t n = (size_t)r->o->width * r->o->height;
-    options_of(&options, r, &p);
+    uint32_t w = r->o->part_width ? r->o->part_width : r->o->width;
+    uint32_t h = r->o->part_height ? r->o->part_height : r->o->height;
+    size_t n = (size_t)w * h;
     r->near = r->o->near;
     r->far = r->o->far;
-    r->picture = (struct hlh_picture){ r->o->width, r->o->height,
-                                       malloc(n * 3 * sizeof(float)), true };
+    r->picture = (struct hlh_picture){ w, h, malloc(n * 3 * sizeof(float)),
+                                       true };
+    options_of(&options, r, &p);
     r->inside.ids = r->o->ids || r->o->dump ? malloc(n * sizeof(uint32_t))
                                             : NULL;
     if (!r->picture.rgb || ((r->o->ids || r->o->dump) && !r->inside.ids))

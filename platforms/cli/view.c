@@ -152,6 +152,9 @@ static void count_features(struct hl_needs *out,
         out->shadow_points |= world->lights[i].shadow &&
                               world->lights[i].kind == HL_POINT;
     }
+    /* Zero would be an unknown number to the planner. */
+    if (out->n_shadow_lights == 0)
+        out->shadows = HL_SHADOWS_NONE;
     for (uint32_t i = 0; i < world->scene->n_materials; i++)
         out->brdfs |= world->materials[i].brdf != HL_BRDF_BLINN_PHONG;
 }

@@ -47,8 +47,9 @@ struct hl_pe_fragments {
     float vary[HL_PE_VARY_COUNT][HL_PE_BATCH];
     float duv[4][HL_PE_BATCH];                /* du/dx dv/dx du/dy dv/dy; the
                                                * same                        */
-    /* Pixels from the centre to where z and varyings were taken; set, and
-     * not zero, for stages of HL_CENTROID rows alone. */
+    /* Pixels from the centre to where z and varyings were taken, of built-in
+     * stages that read at centroids; anything at all for others, whose z and
+     * varyings are the centre's. */
     float off_x[HL_PE_BATCH], off_y[HL_PE_BATCH];
     uint8_t back[HL_PE_BATCH];                /* 1: a back face              */
     uint8_t discard[HL_PE_BATCH];             /* the stage sets 1 to discard */

@@ -67,13 +67,11 @@ void pe_alpha_test(const struct pe_draw *d, struct hl_pe_fragments *f,
                    bool full)
 {
     float alpha[HL_PE_BATCH];
-    /* Factors alone have no cutoff. */
-    uint32_t mask = pe_spec_uint(d, HL_SPEC_MASK);
-    if (mask == 0 || (!full && mask != 2)) {
+    if (!full || pe_spec_uint(d, HL_SPEC_MASK) == 0) {
         memset(f->discard, 0, sizeof f->discard);
         return;
     }
-    pe_surface_alpha(d, f, full, alpha);
+    pe_surface_alpha(d, f, true, alpha);
     alpha_test(d, f, alpha);
 }
 

@@ -22,7 +22,7 @@ void pe_read_normal(const struct pe_draw *, const struct hl_pe_fragments *,
 /* Alpha alone. */
 void pe_surface_alpha(const struct pe_draw *, const struct hl_pe_fragments *,
                       bool full, float *out);
-/* Sets every discard: 0 or, by HL_SPEC_MASK, by alpha. */
+/* Sets every discard: 0 or, of textured stages by HL_SPEC_MASK, by alpha. */
 void pe_alpha_test(const struct pe_draw *, struct hl_pe_fragments *,
                    bool full);
 /* shaders/stipple.glsl: discards too what is not on the object's pattern. */

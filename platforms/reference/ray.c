@@ -34,6 +34,8 @@ bool hlr_camera_make(struct hlr_camera *out, const struct hlh_camera *camera,
     out->right = mul3(across, 2 / w);
     out->down = mul3(up, -2 * tangent / h);
     out->corner = add3(sub3(f, across), mul3(up, tangent));
+    out->corner = sub3(out->corner, add3(mul3(out->right, options->jitter[0]),
+                                         mul3(out->down, options->jitter[1])));
     out->near = options->near;
     out->far = options->far > 0 ? options->far : HUGE_VAL;
     return true;

@@ -62,6 +62,8 @@ struct hlr_options {
     bool brute_force;            /* try every triangle and every light, for
                                   * the test of the trees: the same picture  */
     double near, far;            /* view depth that is drawn; 0 = no limit   */
+    double jitter[2];            /* pixels that the picture moves right and
+                                  * down, finite                             */
     /* Called now and then with the part done, 0..1, from any worker thread
      * but never from two at once; NULL = none. */
     void (*progress)(double fraction, void *user);
@@ -118,8 +120,8 @@ bool hlr_draw(float *rgb_out, uint32_t *ids_out,
               const struct hlr_options *options, struct hlr_stats *stats);
 
 /* Cast the one ray through (x, y) in pixels, centres at half integers; of the
- * options only width, height, normal_maps, no_specular, near, far and
- * brute_force count. False as hlr_draw. */
+ * options only width, height, normal_maps, no_specular, shadows, near, far,
+ * jitter and brute_force count. False as hlr_draw. */
 bool hlr_probe(struct hlr_probe *out, const struct hlr_prepared *prepared,
                const struct hlr_options *options, double x, double y);
 
