@@ -57,8 +57,8 @@ HOST := $(call objs,platforms/host/*.c)
 REFERENCE := $(call objs,platforms/reference/*.c)
 CLI_LIB := $(filter-out %/main.o %/packemu_main.o,$(call objs,platforms/cli/*.c))
 # What of host and cli needs no library: built-in scenes drawn by a device.
-PLAIN := $(patsubst %,$(B)/obj/platforms/host/%.o,builder builtin builtin_cutout builtin_hall builtin_layers builtin_paper builtin_shadow builtin_stress \
-    builtin_works file image_pfm mesh_clean scene_finish shapes util) \
+PLAIN := $(patsubst %,$(B)/obj/platforms/host/%.o,builder builtin builtin_brdf builtin_cutout builtin_hall builtin_layers \
+    builtin_paper builtin_shadow builtin_stress builtin_works file image_pfm mesh_clean scene_finish shapes util) \
   $(patsubst %,$(B)/obj/platforms/cli/%.o,bridge bridge_ids bridge_mesh bridge_shadow bridge_texture fail plan_reason \
     plan_text readback render_device setup spread tap value view)
 LIST := $(B)/obj/platforms/platforms.o

@@ -68,7 +68,8 @@ struct hl_frame_stats {
 enum hl_result hl_frame_draw(struct hl_renderer *, const struct hl_frame *,
                              struct hl_frame_stats *stats);
 
-/* The finished frame: linear, one sample a pixel. The whole target, of the
+/* The finished frame: linear, one sample a pixel, of several the mean before
+ * any tone mapping. The whole target, of the
  * plan's size: valid are hl_frame.width x height pixels from the top left,
  * the rest is background. */
 hl_tex hl_renderer_output(const struct hl_renderer *);
@@ -84,8 +85,7 @@ enum hl_inspect {
                               * evaluations (frame pixels, or L-buffer
                               * texels for the inferred pipeline); not above
                               * 65,535, or 255, where nothing with more
-                              * codes blends; of plans with light lists
-                              * without lights that have shadows             */
+                              * codes blends                                 */
     HL_INSPECT_REJECTS,      /* uint8 a frame pixel: rejected DSF taps + 1,
                               * 0 = background; inferred pipeline only       */
     HL_INSPECT_STIPPLE       /* uint8 an L-buffer texel: 0 background, 1 opaque,

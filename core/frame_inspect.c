@@ -190,6 +190,9 @@ enum hl_result hl_frame_inspect(struct hl_renderer *r,
     if (e == HL_OK)
         e = need_programs(r, what);
     bool light = on_light_buffer(r, what);
+    /* Lights with shadows count as all others, wherever they reach. */
+    if (what == HL_INSPECT_LIGHTS)
+        r->n_plain = r->n_spheres;
     if (e == HL_OK && light && r->plan.light_path != HL_LIGHT_PATH_RECTS)
         e = hl_build_tiles(r, f);
     if (e != HL_OK)

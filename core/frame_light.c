@@ -204,16 +204,6 @@ void hl_light_pass_textures(struct hl_renderer *r)
     t[HL_TEX_EXPONENT].tex = r->target[HL_ROLE_EXPONENT];
 }
 
-/* Those with shadows, each in its rectangle. Lists do not blend, so that they
- * count their own lights alone. */
-static void count_shadowed(struct hl_renderer *r, const struct hl_frame *f)
-{
-    struct hl_rect b;
-    for (uint32_t i = r->n_plain; i < r->n_spheres; i++)
-        if (hl_sphere_rect(&b, &r->spheres[i], &r->span))
-            draw_batch(r, f, &b, &i, 1, true);
-}
-
 void hl_emit_light_pass(struct hl_renderer *r, const struct hl_frame *f)
 {
     hl_light_pass_textures(r);
@@ -225,8 +215,6 @@ void hl_emit_light_pass(struct hl_renderer *r, const struct hl_frame *f)
         hl_volumes_lights(r, f);
     else
         draw_rects(r, f);
-    if (r->counting && r->plan.light_path != HL_LIGHT_PATH_LISTS)
-        count_shadowed(r, f);
 }
 
 /* Tile lists, bounded by the depth that the geometry pass left where the

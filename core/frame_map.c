@@ -219,12 +219,11 @@ static void draw_light(struct hl_renderer *r, const struct hl_frame *f,
                        uint32_t i, const struct hl_shadow_target *t,
                        const struct hl_shadow_scene *scene)
 {
-    const struct hl_light *l = &f->lights[r->spheres[i].light];
     struct hl_shadow_map m;
     struct hl_rect rect;
     if (!hl_sphere_rect(&rect, &r->spheres[i], &r->span))
         return;
-    hl_shadow_fit(&m, l, t, scene);
+    hl_shadow_fit(&m, &f->lights[r->spheres[i].light], t, scene);
     uint32_t n = count_casters(r, &m);
     if (n == 0)
         m.kind = HL_MAP_NONE;
@@ -233,9 +232,6 @@ static void draw_light(struct hl_renderer *r, const struct hl_frame *f,
     add_light(r, f, i, &rect, &m);
     r->stats.shadow_lights++;
     r->stats.shadow_casters += n;
-    /* Tiles' lists have the others; of rectangles no peak is known. */
-    if (r->plan.light_path != HL_LIGHT_PATH_RECTS)
-        r->stats.light_peak += hl_light_peak(l);
 }
 
 void hl_maps_shadowed(struct hl_renderer *r, const struct hl_frame *f)

@@ -20,14 +20,14 @@
 
 static bool has_shadows(const struct hl_plan *p)
 {
-    return p->pipeline == HL_PIPELINE_INFERRED &&
-           p->shadows == HL_SHADOWS_VOLUMES;
+    return p->shadows == HL_SHADOWS_VOLUMES &&
+           hl_plan_pass(p, HL_PASS_SHADOWED);
 }
 
 static bool has_lights(const struct hl_plan *p)
 {
-    return p->pipeline == HL_PIPELINE_INFERRED &&
-           p->light_path == HL_LIGHT_PATH_VOLUMES;
+    return p->light_path == HL_LIGHT_PATH_VOLUMES &&
+           hl_plan_pass(p, HL_PASS_LIGHT);
 }
 
 /* Scratch is two bytes a face and one; a mesh has fewer faces than half the
@@ -298,8 +298,8 @@ static void draw_shadow(struct hl_renderer *r, const struct hl_frame *f,
 
 /* Items that are out of sight cast too; what is drawn as translucent, or lies
  * on other surfaces, does not. */
-static bool casts(const struct hl_renderer *r, const struct hl_frame *f,
-                  const struct hl_item *it, const struct hl_light *l)
+static bool casts(const struct hl_renderer *r, const struct hl_item *it,
+                  const struct hl_light *l)
 {
     if (!it->shadow_mesh || it->shadow_vertices.id == 0 || it->no_shadow ||
         hl_surface_class(r, it->surface) != HL_CLASS_OPAQUE)
@@ -309,7 +309,6 @@ static bool casts(const struct hl_renderer *r, const struct hl_frame *f,
     /* What is partly nearer than far is seen to its end. */
     struct hl_camera all = r->wide;
     all.far = 1e9f;
-    (void)f;
     return hl_shadow_reaches(&box, l, &all, r->wide_aspect);
 }
 
@@ -321,7 +320,7 @@ static void one_shadowed(struct hl_renderer *r, const struct hl_frame *f,
     for (uint32_t k = 0; k < f->n_items; k++) {
         const struct hl_item *it = &f->items[k];
         float light[4];
-        if (casts(r, f, it, l) && hl_shadow_light(light, it->world, l))
+        if (casts(r, it, l) && hl_shadow_light(light, it->world, l))
             draw_shadow(r, f, rect, it, light);
     }
     draw_light(r, f, r->volumes.shadowed, rect, i);

@@ -28,8 +28,8 @@ static double light_ns(const struct hl_ask *ask)
     return (double)(flat_cheaper(ask) ? c->light_flat_ns : c->light_ns);
 }
 
-/* One light a draw, cut to the half of its rectangle that is near a surface
- * (measured on rooms of 100 to 1,000 lights), after its volume's two faces. */
+/* One light a draw: at worst all of its rectangle is near a surface and is
+ * shaded, after its volume's two faces. */
 static double volumes_cost(const struct hl_plan *p, const struct hl_ask *ask)
 {
     const struct hl_cost_model *c = &ask->caps->cost;

@@ -82,7 +82,8 @@ struct hl_surface {
      * 0. Its items bring material_block for uniform slot 2; textures and
      * masked are 0. Forward plans refuse it (HL_ERR_UNSUPPORTED). Plans with
      * float_taps (consoles) need the stage compiled with HL_FLOAT_TAPS
-     * defined before the include, others without. */
+     * defined before the include, others with dsf_bilinear (only where it is
+     * asked for) HL_FLOAT_LIGHT, all others neither. */
     const struct hl_code *own_material;
 };
 

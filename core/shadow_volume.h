@@ -39,7 +39,9 @@
  * - The depth test is strict (less; greater where depth is reversed), so that
  *   a lit face does not lie in its own shadow, and a cap's depths are the
  *   mesh's own to the bit: the same positions, matrix and expression, which
- *   is invariant in both stages.
+ *   is invariant in both stages, and the same triangles from the same first
+ *   corner on, which rasterizers may interpolate from (the mesh is prepared
+ *   from the indices it is drawn with).
  * - Stencil wraps: fragments come in any order. Depths of more than 255
  *   shadows on one another count wrong.
  * - The model-to-world matrix's determinant is not zero; where it is

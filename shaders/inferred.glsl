@@ -156,8 +156,10 @@ hl_pixel hl_look(vec4 ids)
         slope = abs(dFdx(middle)) * (1.0 / hl_spec_ratio_x) +
                 abs(dFdy(middle)) * (1.0 / hl_spec_ratio_y);
     }
-    return hl_pixel(hl_pixel_depth(), slope, ids.w / 65535.0, ids.x,
-                    hl_dsf_half_step(ids.x));
+    /* Stored depths end at far, which a picture without a far plane does
+     * not. */
+    return hl_pixel(min(hl_pixel_depth(), ids.w), slope, ids.w / 65535.0,
+                    ids.x, hl_dsf_half_step(ids.x));
 }
 
 /* For taps within so many texels of the pixel on either axis. */

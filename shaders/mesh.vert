@@ -80,8 +80,8 @@ void main()
     v_position = (hl_object.model_view * vec4(in_position, 1.0)).xyz;
 #endif
 #ifdef HL_CENTROID
-    /* Not shifted by half a pixel: that shift ends where gl_FragCoord has its
-     * halves, by the machine that asks for it. */
+    /* As before hl_half_pixel: the machine that asks for its shift undoes it,
+     * so that this is where gl_FragCoord says the pixel is. */
     v_clip = (hl_object.clip * vec4(in_position, 1.0)).xyw;
 #endif
 #ifdef HL_MOTION

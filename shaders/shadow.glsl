@@ -3,7 +3,7 @@
 #include "shaders/shared/shadow.h"
 
 layout(constant_id = HL_SPEC_MAP_SIZE) const float hl_spec_map_size = 1.0;
-layout(constant_id = HL_SPEC_MAP_KIND) const uint hl_spec_map_kind = HL_MAP_CONE;
+layout(constant_id = HL_SPEC_MAP_KIND) const uint hl_spec_map = HL_MAP_CONE;
 layout(set = 1, binding = HL_TEX_SHADOW) uniform sampler2D hl_tex_shadow;
 layout(set = 0, binding = HL_SLOT_SHADOW, std140) uniform hl_shadow_block {
     mat4 light;
@@ -16,7 +16,7 @@ layout(set = 0, binding = HL_SLOT_SHADOW, std140) uniform hl_shadow_block {
 vec4 hl_shadow_depths(vec2 uv)
 {
     vec4 r = textureGather(hl_tex_shadow, uv, 0);
-    if ((hl_spec_map_kind & HL_MAP_BARG) == 0u)
+    if ((hl_spec_map & HL_MAP_BARG) == 0u)
         return r;
     vec4 g = textureGather(hl_tex_shadow, uv, 1);
     vec4 b = textureGather(hl_tex_shadow, uv, 2);
@@ -42,13 +42,13 @@ float hl_shadow_lit(vec3 p, vec3 n)
     vec3 m = mat3(hl_shadow.light) * n;
     float z = -p.z;
     float error = (hl_shadow.error.x * z + hl_shadow.error.y) * z;
-    vec3 s = hl_shadow_place(hl_spec_map_kind & 3u, q, m, hl_shadow.map, hl_shadow.depth, error,
-                             hl_spec_map_size);
+    vec3 s = hl_shadow_place(hl_spec_map & 3u, q, m, hl_shadow.map,
+                             hl_shadow.depth, error, hl_spec_map_size);
     vec2 low = floor(s.xy - 0.5);
     vec2 f = s.xy - 0.5 - low;
     vec4 x = hl_shadow_weights(f.x);
     vec4 y = hl_shadow_weights(f.y);
-    bool six = (hl_spec_map_kind & HL_MAP_SIX) != 0u;
+    bool six = (hl_spec_map & HL_MAP_SIX) != 0u;
     /* Gathered at corners of texels, where no rounding takes other ones. */
     vec2 texel = vec2(six ? 1.0 / 3.0 : 1.0, six ? 0.5 : 1.0) /
                  hl_spec_map_size;

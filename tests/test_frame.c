@@ -333,7 +333,7 @@ static void inspecting_is_checked(void **state)
                                       sizeof out), HL_ERR_INVALID);
     assert_int_equal(hl_frame_inspect(run.r, &s.frame, HL_INSPECT_IDS, NULL,
                                       sizeof out), HL_ERR_INVALID);
-    assert_int_equal(hl_frame_inspect(run.r, &s.frame, (enum hl_inspect)3,
+    assert_int_equal(hl_frame_inspect(run.r, &s.frame, (enum hl_inspect)4,
                                       out, sizeof out), HL_ERR_INVALID);
     assert_int_equal(hl_frame_inspect(run.r, &s.frame, HL_INSPECT_IDS, out,
                                       sizeof out - 4), HL_ERR_INVALID);

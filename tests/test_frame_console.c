@@ -179,6 +179,7 @@ static void background_is_packed_alike(void **state)
         struct fk_run run;
         ck_open_as(&m, backend, profiles[i]);
         fk_begin(&s, &m);
+        fk_light(&s, 0, 0, 0, 1);    /* without any there is no G-buffer     */
         fk_prepare(&run, &s, HL_PIPELINE_INFERRED);
         run.desc.n_surfaces = FK_BLENDED;
         assert_int_equal(fk_create(&run), HL_OK);

@@ -47,12 +47,14 @@ enum { SHIFTS = sizeof shifts / sizeof *shifts };
 
 /* The camera stands 10 before the origin; the floor is y = -3, the wall
  * z = -8, so that the eye is 3 above the one and 18 before the other. */
-static void floor_and_wall(struct ck_machine *m, enum hl_light_path path)
+static void floor_and_wall(struct ck_machine *m, enum hl_light_path path,
+                           bool large)
 {
     uint64_t seed = 11;
-    begin(m, LIGHT_W, LIGHT_H);
+    begin(m, large ? FK_W : LIGHT_W, large ? FK_H : LIGHT_H);
     scene.needs.light_path = path;
     scene.needs.tile = 8;
+    scene.needs.batch = path == HL_LIGHT_PATH_RECTS; /* unions hide bounds   */
     scene.needs.light_format = HL_FORMAT_RGBA32_FLOAT;
     fk_room(&scene, 0, &seed);
     scene.frame.n_items = 2;
@@ -70,6 +72,9 @@ static void floor_and_wall(struct ck_machine *m, enum hl_light_path path)
         for (int c = 0; c < 3; c++)
             l->color[c] = c == i % 3 ? 0.5f : 0.0f;
     }
+    /* Seen by a wide part of the targets, not by all of them. */
+    fk_light(&scene, -11, -2.99f, 3, 1.3f);
+    fk_light(&scene, 11, -2.99f, 3, 1.3f);
 }
 
 /* View position and normal of what slope (x, y) sees; false where that is
@@ -118,44 +123,42 @@ static void check_light(const struct fk_run *run, const float *light,
 {
     const struct hl_frame *f = &scene.frame;
     double w = f->width ? f->width : FK_W, h = f->height ? f->height : FK_H;
-    double sx = (double)LIGHT_W / FK_W, sy = (double)LIGHT_H / FK_H;
-    double ty = (double)f->camera.tan_half_y, tx = ty * w / h
-        , worst[2] = { 0, 0 };
+    int lw = (int)run->plan.light_width, lh = (int)run->plan.light_height;
+    double sx = (double)lw / FK_W, sy = (double)lh / FK_H;
+    double ty = (double)f->camera.tan_half_y, tx = ty * w / h;
+    double worst[2] = { 0, 0 };  /* wall, floor                              */
     uint32_t lit = 0, missed = 0;
     for (int y = 0; y < h * sy; y++)
         for (int x = 0; x < w * sx; x++) {
             double p[3], n[3], d[3];
-            const float *got = light + 4 * (y * LIGHT_W + x);
+            const float *got = light + 4 * (y * lw + x);
             double a = tx * (2 * ((x + 0.5) / sx - (double)jx) / w - 1);
             double b = ty * (1 - 2 * ((y + 0.5) / sy - (double)jy) / h);
             if (!surface_at(a, b, p, n))
                 continue;
             int reach = light_at(p, n, d);
             lit += reach > 0;
-            missed += counts[y * LIGHT_W + x] < (float)reach;
+            missed += counts[y * lw + x] < (float)reach;
             for (int c = 0; c < 3; c++)
                 worst[n[1] > 0] = fmax(worst[n[1] > 0],
                                        fabs((double)got[c] - d[c]));
         }
-    if (getenv("SHOW"))
-        print_message("path %d, %gx%g, %g %g: %u lit, %u missed, worst %g, "
-                      "floor %g\n",
-                      (int)run->plan.light_path, w, h, (double)jx, (double)jy,
-                      lit, missed, worst[0], worst[1]);
     assert_true(lit > 100);
     assert_int_equal(missed, 0);
     assert_true(worst[0] <= 1e-4 && worst[1] <= 1.6e-3);
 }
 
-static void light_is_exact_under_jitter(void **state)
+/* By every path, or where L texels are as large as pixels by those that cut
+ * draws to bounds: jitter of 5/8 texel is within what these round up by. */
+static void check_paths(struct ck_machine *m, bool large)
 {
-    struct ck_machine *m = ck_machine(state);
-    static float counts[LIGHT_W * LIGHT_H];
-    for (int i = 0; i < PATHS; i++) {
+    static float counts[FK_W * FK_H];
+    for (int i = 0; i < (large ? 2 : PATHS); i++) {
         struct fk_run run;
-        floor_and_wall(m, paths[i]);
+        floor_and_wall(m, paths[i], large);
         create(&run, HL_PIPELINE_INFERRED);
         assert_int_equal(run.plan.light_path, paths[i]);
+        size_t texels = (size_t)run.plan.light_width * run.plan.light_height;
         for (int k = 0; k < SHIFTS; k++) {
             set_jitter(shifts[k].x, shifts[k].y);
             scene.frame.width = shifts[k].w;
@@ -163,13 +166,19 @@ static void light_is_exact_under_jitter(void **state)
             float *light = fk_read(&run, HL_ROLE_LIGHT);
             assert_int_equal(hl_frame_inspect(run.r, &scene.frame,
                                               HL_INSPECT_LIGHTS, counts,
-                                              sizeof counts), HL_OK);
+                                              texels * sizeof *counts), HL_OK);
             check_light(&run, light, counts, shifts[k].x, shifts[k].y);
             free(light);
         }
         fk_destroy(&run);
         fk_end(&scene);
     }
+}
+
+static void light_is_exact_under_jitter(void **state)
+{
+    check_paths(ck_machine(state), false);
+    check_paths(ck_machine(state), true);
 }
 
 /* ---- where the picture goes ---------------------------------------------- */
@@ -191,8 +200,6 @@ static void check_moved(enum hl_pipeline pipeline)
         for (int x = 0; x + 1 < FK_W; x++)
             off += fk_difference(fk_at(still, x, y),
                                  fk_at(moved, x + 1, y + 1), 1) > 2e-3;
-    if (getenv("SHOW"))
-        print_message("%d: %u pixels off\n", (int)pipeline, off);
     assert_true(off <= N / 500);
     free(still);
     free(moved);
@@ -210,7 +217,38 @@ static void a_pixel_of_jitter_moves_by_a_pixel(void **state)
     fk_end(&scene);
 }
 
-/* ---- frames averaged ------------------------------------------------------ */
+/* A quad that begins 0.3 pixels right of the picture, and one as far below:
+ * neither culled nor cut off when jitter moves them in by a pixel. */
+static void what_jitter_brings_in_is_drawn(void **state)
+{
+    struct ck_machine *m = ck_machine(state);
+    double ty = 0.57735, tx = ty * FK_W / FK_H, out = 1 + 0.6 / FK_W;
+    begin(m, LIGHT_W, LIGHT_H);
+    struct hl_item *right = fk_add(&scene, FK_QUAD, FK_PLAIN,
+                                   (float)(10 * tx * out + 1), 0, 0, 1);
+    out = 1 + 0.6 / FK_H;
+    struct hl_item *low = fk_add(&scene, FK_QUAD, FK_PLAIN, 0,
+                                 (float)(-10 * ty * out - 1), 0, 1);
+    fk_material(&scene, right)->emission[1] = 1;
+    fk_material(&scene, low)->emission[1] = 1;
+    for (int p = 1; p < HL_PIPELINE_COUNT; p++) {
+        struct fk_run run;
+        create(&run, (enum hl_pipeline)p);
+        for (int moved = 0; moved < 2; moved++) {
+            set_jitter((float)-moved, (float)-moved);
+            float *picture = fk_read(&run, HL_ROLE_NONE);
+            assert_int_equal(run.stats.items, 2 * moved);
+            float a = fk_at(picture, FK_W - 1, FK_H / 2 - 1)[1];
+            float b = fk_at(picture, FK_W / 2 - 1, FK_H - 1)[1];
+            assert_true(a == (float)moved && b == (float)moved);
+            free(picture);
+        }
+        fk_destroy(&run);
+    }
+    fk_end(&scene);
+}
+
+/* ---- frames averaged ----------------------------------------------------- */
 
 static float halton(int i, int base)
 {
@@ -278,9 +316,6 @@ static void check_average(enum hl_pipeline pipeline, const float *want,
     float *one = fk_read(&run, HL_ROLE_NONE);
     float *many = averaged(&run, 16);
     double single = rms(one, want), mean = rms(many, want);
-    if (getenv("SHOW"))
-        print_message("%d: %.3g, averaged %.3g\n", (int)pipeline, single,
-                      mean);
     assert_true(mean < single * share);
     free(one);
     free(many);
@@ -307,7 +342,7 @@ static void averages_approach_many_samples(void **state)
     fk_end(&scene);
 }
 
-/* ---- stipple -------------------------------------------------------------- */
+/* ---- stipple ------------------------------------------------------------- */
 
 /* A pane over all of the picture before a wall, and two that overlap. */
 static void panes(struct ck_machine *m, enum hl_translucency how)
@@ -397,7 +432,7 @@ static void patterns_belong_to_texels(void **state)
     }
 }
 
-/* ---- what is none --------------------------------------------------------- */
+/* ---- what is none -------------------------------------------------------- */
 
 static void other_jitter_is_refused(void **state)
 {
@@ -427,6 +462,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         ON_ALL(light_is_exact_under_jitter),
         ON_ALL(a_pixel_of_jitter_moves_by_a_pixel),
+        ON_ALL(what_jitter_brings_in_is_drawn),
         ON_ALL(averages_approach_many_samples),
         ON_ALL(patterns_belong_to_texels),
         CK_ON("null", other_jitter_is_refused),

@@ -492,9 +492,9 @@ static void shadows_fall_on_every_layer(void **state)
 enum { MOVES = 64 };
 
 /* Seen from straight above, a step of one pixel's width moves the picture of
- * the floor by one pixel and changes nothing else: how much of the light of
- * a spot changes is crawling. The floor reaches past the view, so that the
- * map is fitted to the view. Returns the mean over pixels in half shadow. */
+ * the floor by one pixel and changes nothing else: what else changes of
+ * the light of a place is crawling. The floor reaches past the view, so that
+ * the map is fitted to the view. Gives the mean over pixels in half shadow. */
 static double crawling(void **state, float pixels)
 {
     static struct stage g;

@@ -190,7 +190,7 @@ static void compare(const struct shot *part, const struct shot *small)
             worst = e > worst ? e : worst;
             off += e <= limit ? 0 : 1;
         }
-    if (moved + off > w * h / 500 || getenv("SHOW"))
+    if (moved + off > w * h / 500)
         print_message("%s, %d, path %d: %u other surfaces, %u off, worst %.2g "
                       "of %.2g\n", small->plan.profile,
                       (int)small->plan.pipeline, (int)small->plan.light_path,
@@ -199,9 +199,6 @@ static void compare(const struct shot *part, const struct shot *small)
     /* 0.2 % of pixels at most with other taps, and so at the edge too. */
     if (!inferred)
         return;
-    if (getenv("SHOW"))
-        print_message("rejected %g, %g\n", rejected(part, w, h),
-                      rejected(small, w, h));
     assert_true(rejected(part, w, h) <= rejected(small, w, h) + 0.008);
 }
 

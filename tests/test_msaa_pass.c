@@ -140,15 +140,14 @@ static float *draw(const struct picture *p, enum hl_shader first,
 /* ---- coverage ----------------------------------------------------------- */
 
 /* Vulkan's and Direct3D's standard positions, 1/16 pixel. */
-static const int8_t at2[2][2] = { { 4, 4 }, { -4, -4 } };
-static const int8_t at4[4][2] = { { -2, -6 }, { 6, -2 }, { -6, 2 },
-                                  { 2, 6 } };
-static const int8_t at8[8][2] = { { 1, -3 }, { -1, 3 }, { 5, 1 }, { -3, -5 },
-                                  { -5, 5 }, { -7, -1 }, { 3, 7 },
-                                  { 7, -7 } };
+static const int8_t at[3][8][2] = {
+    { { 4, 4 }, { -4, -4 } },
+    { { -2, -6 }, { 6, -2 }, { -6, 2 }, { 2, 6 } },
+    { { 1, -3 }, { -1, 3 }, { 5, 1 }, { -3, -5 },
+      { -5, 5 }, { -7, -1 }, { 3, 7 }, { 7, -7 } } };
 
 /* 1 inside of the triangle, 0 outside, -1 on an edge; 1/256 pixel. */
-static int inside(const int v[3][2], int x, int y)
+static int inside(int v[3][2], int x, int y)
 {
     int low = 1, high = -1;
     for (int i = 0; i < 3; i++) {
@@ -163,14 +162,14 @@ static int inside(const int v[3][2], int x, int y)
 }
 
 /* Samples of a pixel that must and that may be covered. */
-static void count(const int v[3][2], uint32_t samples, int x, int y,
+static void count(int v[3][2], uint32_t samples, int x, int y,
                   int *must, int *may)
 {
-    const int8_t (*at)[2] = samples == 2 ? at2 : samples == 4 ? at4 : at8;
+    uint32_t row = samples / 4;     /* of 2, 4, 8                              */
     *must = *may = 0;
     for (uint32_t i = 0; i < samples; i++) {
-        int in = inside(v, x * 256 + 128 + at[i][0] * 16,
-                        y * 256 + 128 + at[i][1] * 16);
+        int in = inside(v, x * 256 + 128 + at[row][i][0] * 16,
+                        y * 256 + 128 + at[row][i][1] * 16);
         *must += in == 1;
         *may += in != 0;
     }

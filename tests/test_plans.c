@@ -106,6 +106,39 @@ static void print_plan(FILE *out, const char *title, enum hl_pipeline want,
     fputc('\n', out);
 }
 
+/* What figure 6 asks for, and all that a plan can have, by volumes and by
+ * maps. */
+static void print_features(FILE *out, const struct hl_caps *caps)
+{
+    struct hl_needs n = needs_of(2);
+    n.light_depth_bound = false;
+    n.blended = true;
+    n.blended_layers = 3;
+    n.translucency = HL_TRANSLUCENCY_2X2;
+    n.shadows = HL_SHADOWS_VOLUMES;
+    n.n_shadow_lights = 1;
+    print_plan(out, "fig9, figure 6", HL_PIPELINE_INFERRED, &n, caps);
+    n.blended_layers = 9;
+    n.translucency = HL_TRANSLUCENCY_AUTO;
+    n.light_path = HL_LIGHT_PATH_VOLUMES;
+    n.decals = n.motion = n.brdfs = true;
+    n.samples = caps->samples < 4 ? 1 : 4;
+    print_plan(out, "fig9, all by volumes", HL_PIPELINE_INFERRED, &n, caps);
+    n.shadows = HL_SHADOWS_MAPS;
+    n.shadow_points = true;
+    n.stipple_filter = HL_STIPPLE_BILINEAR;
+    n.fill = HL_FILL_BILINEAR;
+    n.fetch = HL_FETCH_BILINEAR;
+    n.light_path = HL_LIGHT_PATH_AUTO;
+    n.no_centroid = true;
+    n.samples = 1;
+    print_plan(out, "fig9, all by maps", HL_PIPELINE_INFERRED, &n, caps);
+    n.motion = false;
+    print_plan(out, "fig9, shadows", HL_PIPELINE_FORWARD, &n, caps);
+    n.shadows = HL_SHADOWS_NONE;
+    print_plan(out, "fig9, all by forward", HL_PIPELINE_FORWARD, &n, caps);
+}
+
 /* Three scenes of many lights: exponents that differ, one exponent, and
  * inverse square lights under glass. */
 static void print_console(FILE *out, const struct hl_profile *profile,
@@ -136,6 +169,7 @@ static void print_console(FILE *out, const struct hl_profile *profile,
     n.light_width = n.light_height = 0;
     n.samples = 4;
     print_plan(out, "fig9, 4 samples", HL_PIPELINE_INFERRED, &n, &c);
+    print_features(out, &c);
 }
 
 static void print_consoles(FILE *out)
@@ -172,6 +206,8 @@ static void print_all(FILE *out)
     n.dsf = HL_DSF_CONSTANT_TAU;
     n.light_format = HL_FORMAT_RGBA16_UNORM;
     print_plan(out, "fig8, as published", HL_PIPELINE_INFERRED, &n, &lavapipe);
+    print_features(out, &lavapipe);
+    print_features(out, &small);
     print_consoles(out);
 }
 

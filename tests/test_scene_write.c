@@ -90,6 +90,7 @@ static const struct {
     {"decals", 30, 30, 4000, 10000, 0x005634c4ca37fed8},
     {"shadows", 10, 9, 4000, 8000, 0xabc59aca0fda6937},
     {"glass", 67, 25, 10000, 20000, 0x24d27dd5a6240200},
+    {"brdfs", 7, 6, 4000, 12000, 0x7b68b0076ae9b197},
 };
 
 static void built_in_scenes_have_the_papers_counts(void **state)

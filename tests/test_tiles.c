@@ -71,11 +71,18 @@ static void make_world(struct world *w, uint64_t *seed, uint32_t tile,
     }
     w->light[7].kind = HL_DIRECTIONAL;
     w->light[7].direction[1] = -1;
-    w->n_spheres = hl_lights_view(w->sphere, w->light, LIGHTS, &w->cam,
+    /* Sees more than the picture, as jitter of 4 texels asks. */
+    struct hl_camera wide = w->cam;
+    wide.tan_half_y *= 1.0f + 8.0f / H;
+    w->n_spheres = hl_lights_view(w->sphere, w->light, LIGHTS, &wide,
                                   (float)W / H);
     make_depth(w, seed, reversed);
     struct hl_tile_grid *g = &w->grid;
     g->span = hl_span_whole(W, H, &w->cam, (float)W / H);
+    if (reversed) {              /* more than jitter does, to show           */
+        g->span.jx = (float)ck_between(seed, -4, 4);
+        g->span.jy = (float)ck_between(seed, -4, 4);
+    }
     g->tile = tile;
     g->nx = (W + tile - 1) / tile;
     g->ny = (H + tile - 1) / tile;
@@ -114,8 +121,9 @@ static bool reaches(const struct world *w, int texel, const struct hl_light *l)
 {
     double ty = (double)w->cam.tan_half_y, tx = ty * W / H;
     double z = (double)w->z[texel];
-    double p[3] = { ((texel % W + 0.5) / W * 2 - 1) * tx * z,
-                    (1 - (texel / W + 0.5) / H * 2) * ty * z, -z };
+    double u = texel % W + 0.5 - (double)w->grid.span.jx;
+    double v = texel / W + 0.5 - (double)w->grid.span.jy;
+    double p[3] = { (u / W * 2 - 1) * tx * z, (1 - v / H * 2) * ty * z, -z };
     double d2 = 0, r = (double)l->radius;
     for (int k = 0; k < 3; k++)
         d2 += (p[k] - (double)l->position[k]) * (p[k] - (double)l->position[k]);

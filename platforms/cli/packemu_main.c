@@ -119,6 +119,8 @@ static const char usage[] =
     "  --size WxH          pixels; default 1280x720\n"
     "  --light-size WxH    of the light buffer; default 5/8 of the size\n"
     "  --samples 1|2|4|8   a pixel; default 1\n"
+    "  --shadows none|volumes|maps\n"
+    "  --translucency auto|forward|2x2|4x4\n"
     "  --threads N         default 0: one a processor\n"
     "  --frames N          timed frames\n"
     "  --hdr F.pfm         linear picture\n"
@@ -161,6 +163,16 @@ static bool take_word(struct hlc_options *o, const char *name,
         o->pipeline = (enum hl_pipeline)(i < 0 ? 0 : i);
         return i >= 0;
     }
+    if (!strcmp(name, "shadows")) {
+        i = hlc_read_word(value, "none|volumes|maps");
+        o->shadows = (enum hl_shadows)(i < 0 ? 0 : i);
+        return i >= 0;
+    }
+    if (!strcmp(name, "translucency")) {
+        i = hlc_read_word(value, "auto|forward|2x2|4x4");
+        o->translucency = (enum hl_translucency)(i < 0 ? 0 : i);
+        return i >= 0;
+    }
     i = hlc_read_word(value, "1|2|4|8");
     o->samples = 1u << (i < 0 ? 0 : i);
     return i >= 0;
@@ -176,7 +188,8 @@ static bool take(struct job *j, const char *name, const char *value)
         return (j->mutant = value)[0];
     if (!strcmp(name, "profile"))
         return hl_profile_find(o->profile = value) != NULL;
-    if (!strcmp(name, "pipeline") || !strcmp(name, "samples"))
+    if (!strcmp(name, "pipeline") || !strcmp(name, "samples") ||
+        !strcmp(name, "shadows") || !strcmp(name, "translucency"))
         return take_word(o, name, value);
     if (!strcmp(name, "size"))
         return take_size(&o->width, &o->height, value);

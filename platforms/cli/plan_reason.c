@@ -7,8 +7,8 @@
 /* In `text` a mark and a digit stand for an argument: #0 a whole number, $0
  * a number, =0 a number or "-" where it is 0, %0 a share in percent, @0 a
  * format, &0 a pipeline, ~0 a light path, ^0 a target, *0 a pass, !0 a word
- * in hexadecimal. `zero` is said in its place where argument 0 is 0. */
-struct row { const char *name, *section, *text, *zero; };
+ * in hexadecimal. */
+struct row { const char *name, *section, *text; };
 
 static const struct row rows[HL_WHY_COUNT] = {
     [HL_WHY_NONE] = { "none", "", "" },
@@ -195,14 +195,13 @@ static const struct row rows[HL_WHY_COUNT] = {
         "there; what has none is lit forward" },
     [HL_WHY_STIPPLE_FILTER] = { "stipple_filter", "K 4",
         "a translucent pixel weighs the four samples of its pattern by a small "
-        "cone", "a translucent pixel weighs the four samples of its pattern "
-        "bilinearly" },
+        "cone" },
     [HL_WHY_SHADOW_VOLUMES] = { "shadow_volumes", "K 1, 4",
-        "#0 lights cast shadows by stencil volumes, depth-fail: one result "
-        "lights opaque and stippled surfaces alike" },
+        "lights that cast shadows: #0, by stencil volumes, depth-fail; what is "
+        "opaque and what is stippled are lit alike" },
     [HL_WHY_SHADOW_MAPS] = { "shadow_maps", "K 1, 4",
-        "#0 lights cast shadows by maps of depth, #1 a light: one result "
-        "lights opaque and stippled surfaces alike" },
+        "lights that cast shadows: #0, by maps of depth, #1 a light; what is "
+        "opaque and what is stippled are lit alike" },
     [HL_WHY_SHADOW_SIZE] = { "shadow_size", "",
         "a shadow map has #0 texels a side where #1 were wanted; the target is "
         "#2 x #3" },
@@ -214,19 +213,13 @@ static const struct row rows[HL_WHY_COUNT] = {
         "stencil volume" },
     [HL_WHY_FILL] = { "fill", "K 3",
         "a pixel whose taps are all rejected reads the nearest sample of its "
-        "own surface within two texels, else the tap nearest in depth",
-        "a pixel whose taps are all rejected reads all four of them, as "
-        "published" },
+        "own surface within two texels, else the tap nearest in depth" },
     [HL_WHY_FETCH] = { "fetch", "K 7.1",
         "light is fetched filtered where no tap is rejected, else by four "
-        "taps: predicted =2 ns a pixel, four always =1",
-        "light is fetched by four taps: predicted =1 ns a pixel, filtered "
-        "where none is rejected =2" },
+        "taps: predicted =2 ns a pixel, four always =1" },
     [HL_WHY_CENTROID] = { "centroid", "K 3",
         "the multisampled material pass interpolates at the centroid of what "
-        "a surface covers, so that light is read where it is",
-        "the multisampled material pass interpolates at pixel centres, as "
-        "asked: edges may read light from beside their surface" },
+        "a surface covers, so that light is read where it is" },
     [HL_WHY_MOTION] = { "motion", "",
         "screen motion since the last frame is stored in @0" },
     [HL_WHY_BRDFS] = { "brdfs", "K 2.1",
@@ -235,6 +228,27 @@ static const struct row rows[HL_WHY_COUNT] = {
     [HL_WHY_NO_LIGHT_PASS] = { "no_light_pass", "K 7.1",
         "there is no light to sum: the light pass is left out" },
 };
+
+/* Of those that decide between two ways, the other: argument 0 is 0. */
+static const char *other_way(enum hl_reason why)
+{
+    switch (why) {
+    case HL_WHY_STIPPLE_FILTER:
+        return "a translucent pixel weighs the four samples of its pattern "
+               "bilinearly";
+    case HL_WHY_FILL:
+        return "a pixel whose taps are all rejected reads all four of them, "
+               "as published";
+    case HL_WHY_FETCH:
+        return "light is fetched by four taps: predicted =1 ns a pixel, "
+               "filtered where none is rejected =2";
+    case HL_WHY_CENTROID:
+        return "the multisampled material pass interpolates at pixel centres, "
+               "as asked: edges may read light from beside their surface";
+    default:
+        return NULL;
+    }
+}
 
 static const struct row *row_of(enum hl_reason why)
 {
@@ -297,8 +311,8 @@ void hlc_reason_text(const struct hl_plan *plan, uint32_t i, char *out,
     size_t used = 0;
     if (bytes == 0)
         return;
-    if (row_of(reason->why)->zero && !(reason->arg[0] > 0))
-        t = row_of(reason->why)->zero;
+    if (other_way(reason->why) && !(reason->arg[0] > 0))
+        t = other_way(reason->why);
     /* Forward shading reads each material; nothing is shared or stored. */
     if (reason->why == HL_WHY_EXPONENT_CONSTANT &&
         plan->pipeline != HL_PIPELINE_INFERRED)
@@ -332,7 +346,7 @@ const char *hlc_refusal_text(enum hl_refusal why)
         "its targets do not fit the console's EDRAM",
         ("pixel centres are at halves here: neither state nor vertices shift "
          "them"),
-        "shadow maps cannot have that size here",
+        "forward pipelines have no shadows, and maps have a largest size",
         "motion vectors need the inferred pipeline and a colour target more",
     };
     return text[(unsigned)why < HL_REFUSED_COUNT ? why : 0];

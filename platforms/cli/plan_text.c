@@ -222,6 +222,8 @@ static void print_pass(FILE *out, const struct hl_plan_pass *p)
     for (size_t i = 0; i < COUNT(p->color); i++)
         if (p->color[i] != HL_ROLE_NONE)
             fprintf(out, " %s", hlc_role_name(p->color[i]));
+    if (p->color[0] == HL_ROLE_NONE)
+        fprintf(out, " no color");
     if (p->depth != HL_ROLE_NONE)
         fprintf(out, ", depth %s %s%s", hlc_role_name(p->depth),
                 hlc_compare_name(p->depth_test),

@@ -124,4 +124,5 @@ void hlh_build_glass(struct hlh_builder *b);
 void hlh_build_shadows(struct hlh_builder *b);
 void hlh_build_fence(struct hlh_builder *b);
 void hlh_build_decals(struct hlh_builder *b);
+void hlh_build_brdfs(struct hlh_builder *b);
 #endif

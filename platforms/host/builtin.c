@@ -43,6 +43,8 @@ static const struct {
      "over simple bodies", 13, hlh_build_shadows},
     {"glass", "60 translucent bodies, many of them in a row, one light that "
      "casts shadows", 14, hlh_build_glass},
+    {"brdfs", "pairs of bodies of two BRDFs, lit from the side", 15,
+     hlh_build_brdfs},
 };
 enum { N_BUILTINS = sizeof builtins / sizeof *builtins };
 

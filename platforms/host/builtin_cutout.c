@@ -176,7 +176,8 @@ static uint32_t decal_material(struct hlh_builder *b, const char *name,
                                void (*color)(uint8_t *, uint32_t, uint32_t),
                                void (*normal)(uint8_t *, uint32_t, uint32_t))
 {
-    uint32_t m = hlh_build_material(b, name, hlh_v3(1, 1, 1), 0.5, 0);
+    /* As rough as what it lies on, whose exponent the light has. */
+    uint32_t m = hlh_build_material(b, name, hlh_v3(1, 1, 1), 0.8, 0);
     int32_t base = hlh_build_image(b, name, TEXELS, color);
     int32_t bump = hlh_build_image(b, name, TEXELS, normal);
     struct hlh_material *material = hlh_build_last_material(b);

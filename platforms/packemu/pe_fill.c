@@ -75,8 +75,9 @@ static void gather_lost(const struct pe_draw *d,
                         const struct hl_pe_fragments *f,
                         const struct lattice *g, struct lost *l)
 {
-    const float *z = pe_pixel_depths(f), *id = f->vary[HL_PE_ID];
-    float threshold[HL_PE_BATCH];
+    const float *id = f->vary[HL_PE_ID];
+    float threshold[HL_PE_BATCH], z[HL_PE_BATCH];
+    pe_pixel_depths(d, f, z);
     pe_thresholds(d, f, 2.0f * g->side, threshold);
     for (uint32_t k = 0; k < l->n; k++) {
         uint32_t i = l->at[k];

@@ -16,11 +16,19 @@ struct pe_dsf {
     float depth[4][HL_PE_BATCH], id[4][HL_PE_BATCH];
 };
 
+static inline bool pe_has_words(const struct pe_view *v)
+{
+    return v->texture &&
+           hl_format_info(v->texture->view)->kind == HL_KIND_UINT;
+}
+
+/* pe_taps.c */
 /* Where pixels lie among the centres of the L-buffer's texels, and their view
  * depths there, metres. */
 void pe_light_pixels(const struct pe_draw *, const struct hl_pe_fragments *,
                      float *x, float *y);
-const float *pe_pixel_depths(const struct hl_pe_fragments *);
+void pe_pixel_depths(const struct pe_draw *, const struct hl_pe_fragments *,
+                     float *z);
 
 /* A texel's number; far outside of any texture it stays there. Lanes beyond n
  * hold anything at all. */
@@ -43,9 +51,10 @@ void pe_accept_taps(const struct pe_draw *, const struct hl_pe_fragments *,
 void pe_accept(const struct pe_draw *, const struct hl_pe_fragments *,
                const struct pe_dsf *, float distance_texels,
                float out[4][HL_PE_BATCH]);
-/* Texels one by one, each clamped: n of the DSF, n of the L-buffer. */
+/* Texels one by one, each clamped: n of the DSF; n of the L-buffer. */
 void pe_fetch_dsf(const struct pe_draw *, const int32_t *x, const int32_t *y,
                   uint32_t n, float *depth, float *id);
+/* pe_inferred.c */
 void pe_fetch_light(const struct pe_draw *, const int32_t *x,
                     const int32_t *y, uint32_t n, float out[4][HL_PE_BATCH]);
 

@@ -192,6 +192,10 @@ struct pe_pass {
 
 /* Sample positions, 1/16 pixel from the centre: [log2 samples]. */
 extern const int8_t pe_sample_at[4][PE_MAX_SAMPLES][2];
+static inline uint32_t pe_sample_level(uint32_t samples)
+{
+    return samples == 8 ? 3 : samples / 2;
+}
 
 /* pe_vertex_fetch.c: what is the same for all of a draw's vertices; and
  * v->n vertices by id. */
@@ -238,6 +242,13 @@ void pe_draw_end(struct pe_bin *);
 /* Start a run of fragments. */
 void pe_raw_begin(struct pe_bin *, const struct pe_tri *);
 void pe_raw_flush(struct pe_bin *);
+
+/* pe_attribute.c: planes of 1 / w, then of the varyings over w in the
+ * program's order; and n fragments of one primitive, by their numbers among
+ * the raw ones, added to the batch. */
+void pe_planes_set(struct pe_plane *, const struct pe_tri *, uint32_t n_vary);
+void pe_batch_join(struct pe_bin *, const struct pe_tri *,
+                   const struct pe_plane *, const uint16_t *pass, uint32_t n);
 
 /* pe_write.c: blend and store what the stage wrote. */
 void pe_batch_write(struct pe_bin *);

@@ -73,9 +73,11 @@ HL_FN hl_vec4 hl_dsf_weights(hl_vec4 b, hl_vec4 a)
 
 /* ---- samples of a stipple pattern (K 4) ---------------------------------- */
 
-/* Radius of the cone, in distances between samples of a pattern. From 1 on
- * taps enter and leave with a jump; below 0.71 the middle of a cell has no
- * tap at all. */
+/* Radius of the cone, in distances between samples of a pattern. Above 1 taps
+ * enter and leave with a jump; below 0.71 the middle of a cell has no tap at
+ * all. Of radii from 0.75 to 1.6 those of 1 and 1.1 give the least errors
+ * against ray traced frames (blades and glass, both patterns, 0.02 dB between
+ * the two; 0.75 and 1.6 are 0.2 to 0.4 dB worse). */
 #define HL_CONE_RADIUS 1.0f
 
 HL_FN float hl_cone(float x, float y)
