@@ -42,6 +42,13 @@ void hl_shift_specs(const struct hl_plan *plan, struct hl_prog_desc *p)
     shift_specs(plan, p, plan->light_width, plan->light_height);
 }
 
+/* HL_SPEC_FILL. */
+static uint32_t fill_of(const struct hl_plan *plan)
+{
+    return plan->fill == HL_FILL_NEAREST ? 1
+           : plan->fill == HL_FILL_DEPTH ? 2 : 0;
+}
+
 /* Everything of a plan that a stage which reads the L-buffer needs. */
 static void inferred_specs(const struct hl_plan *plan, struct hl_prog_desc *p)
 {
@@ -56,7 +63,7 @@ static void inferred_specs(const struct hl_plan *plan, struct hl_prog_desc *p)
     spec_float(p, HL_SPEC_DSF_C, plan->dsf_c);
     spec_float(p, HL_SPEC_DSF_TAU, plan->dsf_tau);
     spec_float(p, HL_SPEC_LIGHT_SCALE, plan->light_scale);
-    spec(p, HL_SPEC_FILL, plan->fill_nearest);
+    spec(p, HL_SPEC_FILL, fill_of(plan));
     spec(p, HL_SPEC_BILINEAR, plan->dsf_bilinear);
     packed_specs(plan, p);
 }
@@ -211,6 +218,11 @@ static void to_blended_material(const struct hl_plan *plan,
         return;
     spec(p, HL_SPEC_STIPPLE, plan->stipple);
     spec(p, HL_SPEC_STIPPLE_CONE, plan->stipple_cone);
+    /* Samples lie two or four texels apart: the next one is worth looking
+     * for at any price, and these surfaces are few. */
+    for (uint32_t i = 0; i < p->n_specs; i++)
+        if (p->spec[i].id == HL_SPEC_FILL && plan->fill == HL_FILL_DEPTH)
+            p->spec[i].value = 1;
 }
 
 static void to_forward(const struct hl_plan *plan, struct hl_prog_desc *p,

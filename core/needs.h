@@ -61,11 +61,13 @@ enum hl_shadows {
 
 /* What a pixel reads whose DSF taps are all rejected. */
 enum hl_fill {
-    HL_FILL_AUTO = 0,              /* NEAREST                                */
+    HL_FILL_AUTO = 0,              /* NEAREST; DEPTH on machines that run what
+                                    * a condition leaves out as well         */
     HL_FILL_NEAREST,               /* the nearest sample of its own surface
-                                    * within two L texels, else the tap nearest
-                                    * in depth                               */
-    HL_FILL_BILINEAR               /* all four, as published (K 3)           */
+                                    * within two L texels, else DEPTH        */
+    HL_FILL_BILINEAR,              /* all four, as published (K 3)           */
+    HL_FILL_DEPTH                  /* all four, by nearness in depth too; what
+                                    * is stippled as NEAREST                 */
 };
 
 /* How the DSF fetches light. */

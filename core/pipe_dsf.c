@@ -8,12 +8,23 @@ static bool rejects(const struct hl_plan *p)
     return p->dsf == HL_DSF_SLOPE || p->dsf == HL_DSF_CONSTANT;
 }
 
+/* Fetches of twelve more samples and of one's light. They serve 2 % of the
+ * pixels at most in the built-in scenes: a machine that pays them for every
+ * pixel (fig8 on lavapipe: 28 % of the frame) does better without. */
+enum { LOOK_AROUND = 17 };
+
 static void choose_fill(struct hl_plan *p, const struct hl_ask *ask)
 {
     if (!rejects(p))
         return;
-    p->fill_nearest = ask->n.fill != HL_FILL_BILINEAR;
-    hl_plan_why(p, HL_WHY_FILL, p->fill_nearest ? 1 : 0, 0, 0, 0);
+    const struct hl_cost_model *c = &ask->caps->cost;
+    double around = (double)c->untaken * LOOK_AROUND * (double)c->fetch_ns;
+    double pixel = (double)c->pixel_ns + 8 * (double)c->fetch_ns;
+    p->fill = ask->n.fill;
+    if (p->fill == HL_FILL_AUTO)
+        p->fill = around > pixel / 10 ? HL_FILL_DEPTH : HL_FILL_NEAREST;
+    hl_plan_why(p, HL_WHY_FILL, (float)p->fill, (float)around, (float)pixel,
+                0);
 }
 
 /* Can the L-buffer be sampled as numbers and filtered? */

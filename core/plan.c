@@ -232,7 +232,7 @@ static enum hl_refusal check(const struct hl_needs *n,
         (unsigned)n->stipple_filter > HL_STIPPLE_BILINEAR ||
         (unsigned)n->stipple_mode > HL_STIPPLE_BY_DEPTH_FREE ||
         (unsigned)n->shadows > HL_SHADOWS_MAPS ||
-        (unsigned)n->fill > HL_FILL_BILINEAR ||
+        (unsigned)n->fill > HL_FILL_DEPTH ||
         (unsigned)n->fetch > HL_FETCH_BILINEAR || n->shadow_size > 16384 ||
         !good(n->lights_per_pixel, 0, 1e9f) ||
         !good(n->lights_per_object, 0, 1e9f) ||

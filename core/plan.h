@@ -92,7 +92,8 @@ enum hl_reason {
 /* Arguments of those whose name does not tell: STIPPLED side, forward and
  * stippled nanoseconds a translucent pixel; STIPPLE_LAYERS asked for, there
  * are; STIPPLE_FILTER 1 for cone; SHADOW_VOLUMES, _MAPS lights, maps a light;
- * SHADOW_SIZE texels; VOLUME_TEXELS texels; FILL 1 for nearest; FETCH 1 for
+ * SHADOW_SIZE texels; VOLUME_TEXELS texels; FILL enum hl_fill, nanoseconds
+ * that NEAREST adds to every pixel, DEPTH's whole pixel; FETCH 1 for
  * bilinear, nanoseconds a pixel gathered, filtered; CENTROID 1 for on;
  * MOTION, BRDFS format. */
 
@@ -184,7 +185,7 @@ struct hl_plan {
                                     * no volume is cut; camera.far still bounds
                                     * culling and the DSF's depth            */
     uint32_t volume_texels;        /* as needs', chosen                      */
-    bool fill_nearest;             /* hl_fill                                */
+    enum hl_fill fill;             /* AUTO: no tap is ever rejected          */
     bool dsf_bilinear;             /* hl_fetch                               */
     bool centroid;                 /* of the multisampled material pass      */
     bool motion, brdfs;            /* further G-buffer channels              */

@@ -70,6 +70,9 @@ struct hl_cost_model {
     float light_gather_ns;   /* one light a pixel, address differs by pixel  */
     float readback_ns;       /* reading one 4-byte texel back to the host    */
     float sync_ns;           /* submit and wait                              */
+    /* Share of what a stage's condition leaves out that is paid all the same:
+     * 1 where vectors run both sides under a mask, 0 where they branch. */
+    float untaken;
 };
 
 enum { HL_CAPS_NAME = 96 };

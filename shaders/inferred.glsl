@@ -277,48 +277,60 @@ ivec2 hl_texel(hl_lattice g, vec2 i)
     return ivec2(min(s * g.side + g.cell, last));
 }
 
-/* Samples 00, 10, 01, 11 from base + corner on. */
+/* Samples 00, 10, 01, 11 from base + corner on. No index that is computed:
+ * software drivers keep an array in memory for one. */
 hl_dsf_taps hl_read_quad(hl_lattice g, vec2 corner)
 {
     if (g.side == 1.0)
         return hl_read_dsf((g.base + corner + 1.0) /
                            vec2(hl_spec_light_w, hl_spec_light_h));
-    hl_dsf_taps t;
-    for (int i = 0; i < 4; i++) {
-        vec2 at = corner + vec2(float(i & 1), float(i >> 1));
-        vec2 v = hl_fetch_dsf(hl_texel(g, at));
-        t.depth[i] = v.x;
-        t.id[i] = v.y;
-    }
-    return t;
+    vec2 a = hl_fetch_dsf(hl_texel(g, corner));
+    vec2 b = hl_fetch_dsf(hl_texel(g, corner + vec2(1.0, 0.0)));
+    vec2 c = hl_fetch_dsf(hl_texel(g, corner + vec2(0.0, 1.0)));
+    vec2 d = hl_fetch_dsf(hl_texel(g, corner + vec2(1.0, 1.0)));
+    return hl_dsf_taps(vec4(a.x, b.x, c.x, d.x), vec4(a.y, b.y, c.y, d.y));
 }
 
-/* Light for a pixel whose four taps are rejected (dsf.h). */
-vec4 hl_fill_light(hl_lattice g, hl_pixel p, hl_dsf_taps t)
+/* What is nearer of the surface's own among four more samples. */
+void hl_fill_from(inout float nearest, inout vec2 best, hl_lattice g,
+                  hl_pixel p, float threshold, vec2 corner)
 {
-    float far = p.step * 65535.0, h = p.half_step;
-    vec4 d = t.depth * p.step;
-    vec2 best = hl_fill_tap(
-        vec4(hl_fill_miss(d.x, t.id.x, p.z, p.id, h, far),
-             hl_fill_miss(d.y, t.id.y, p.z, p.id, h, far),
-             hl_fill_miss(d.z, t.id.z, p.z, p.id, h, far),
-             hl_fill_miss(d.w, t.id.w, p.z, p.id, h, far)));
+    vec4 a = hl_accept(hl_read_quad(g, corner), p, threshold);
+    vec2 u = corner, v = corner + 1.0;
+    vec4 d = vec4(hl_fill_distance(u.x, u.y, g.f),
+                  hl_fill_distance(v.x, u.y, g.f),
+                  hl_fill_distance(u.x, v.y, g.f),
+                  hl_fill_distance(v.x, v.y, g.f));
+    d = mix(vec4(HL_FILL_NONE), d, greaterThan(a, vec4(0.0)));
+    float least = min(min(d.x, d.y), min(d.z, d.w));
+    vec2 at = least == d.x ? u : least == d.y ? vec2(v.x, u.y)
+              : least == d.z ? vec2(u.x, v.y) : v;
+    bool nearer = least < nearest;
+    nearest = nearer ? least : nearest;
+    best = nearer ? at : best;
+}
+
+/* Light for a pixel, which has some already: of a nearer sample where its
+ * taps are `lost` (dsf.h). */
+vec4 hl_fill_light(hl_lattice g, hl_pixel p, vec4 light, bool lost)
+{
+    if (!lost)
+        return light;
     float threshold = hl_threshold(p, 2.0 * g.side);
     float nearest = HL_FILL_NONE;
-    for (int q = 0; q < 4; q++) {
-        vec2 corner = vec2(float(q & 1), float(q >> 1)) * 2.0 - 1.0;
-        hl_dsf_taps s = hl_read_quad(g, corner);
-        vec4 a = hl_accept(s, p, threshold);
-        for (int i = 0; i < 4; i++) {
-            vec2 at = corner + vec2(float(i & 1), float(i >> 1));
-            float distance = hl_fill_distance(at.x, at.y, g.f);
-            if (a[i] > 0.0 && distance < nearest) {
-                nearest = distance;
-                best = at;
-            }
-        }
-    }
-    return hl_fetch_light(hl_texel(g, best));
+    vec2 best = vec2(0.0);
+    hl_fill_from(nearest, best, g, p, threshold, vec2(-1.0, -1.0));
+    hl_fill_from(nearest, best, g, p, threshold, vec2(1.0, -1.0));
+    hl_fill_from(nearest, best, g, p, threshold, vec2(-1.0, 1.0));
+    hl_fill_from(nearest, best, g, p, threshold, vec2(1.0, 1.0));
+    return nearest < HL_FILL_NONE ? hl_fetch_light(hl_texel(g, best)) : light;
+}
+
+/* Weights b of what is accepted, or of what misses least. */
+vec4 hl_lost_weights(vec4 w, vec4 b, hl_pixel p, hl_dsf_taps t, bool lost)
+{
+    vec4 gap = abs(t.depth * p.step - p.z);
+    return lost ? hl_fill_weights(b, gap, p.z) : w;
 }
 
 /* ---- surfaces ------------------------------------------------------------ */
@@ -326,12 +338,13 @@ vec4 hl_fill_light(hl_lattice g, hl_pixel p, hl_dsf_taps t)
 vec4 hl_read_opaque(vec4 ids)
 {
     hl_taps t = hl_find_taps();
+    vec4 b = hl_bilinear(t.f);
     if (hl_spec_dsf == uint(HL_DSF_OFF)) {
 #ifdef HL_FLOAT_LIGHT
         if (hl_spec_bilinear != 0u)
             return hl_filter_light(t);
 #endif
-        return hl_weigh_light(t.middle, hl_bilinear(t.f));
+        return hl_weigh_light(t.middle, b);
     }
     hl_pixel p = hl_look(ids);
     hl_dsf_taps taps = hl_read_dsf(t.middle);
@@ -340,9 +353,23 @@ vec4 hl_read_opaque(vec4 ids)
     if (hl_spec_bilinear != 0u && a == vec4(1.0))
         return hl_filter_light(t);
 #endif
-    if (hl_spec_fill != 0u && a == vec4(0.0))
-        return hl_fill_light(hl_find_lattice(vec2(0.0), 1.0), p, taps);
-    return hl_weigh_light(t.middle, hl_dsf_weights(hl_bilinear(t.f), a));
+    vec4 w = hl_dsf_weights(b, a);
+    if (hl_spec_fill == 0u)
+        return hl_weigh_light(t.middle, w);
+    bool lost = a == vec4(0.0);
+    w = hl_lost_weights(w, b, p, taps, lost);
+    if (hl_spec_fill != 1u)
+        return hl_weigh_light(t.middle, w);
+    return hl_fill_light(hl_find_lattice(vec2(0.0), 1.0), p,
+                         hl_weigh_light(t.middle, w), lost);
+}
+
+vec4 hl_weigh_samples(hl_lattice g, vec4 w)
+{
+    return hl_fetch_light(hl_texel(g, vec2(0.0, 0.0))) * w.x +
+           hl_fetch_light(hl_texel(g, vec2(1.0, 0.0))) * w.y +
+           hl_fetch_light(hl_texel(g, vec2(0.0, 1.0))) * w.z +
+           hl_fetch_light(hl_texel(g, vec2(1.0, 1.0))) * w.w;
 }
 
 /* The four nearest samples of the object's own pattern (K 4). What lies in
@@ -352,19 +379,20 @@ vec4 hl_read_stippled(vec4 ids)
     uint pattern = uint(hl_object.flat_ids.z);
     hl_lattice g = hl_find_lattice(hl_stipple_cell(pattern, hl_spec_stipple),
                                    float(hl_spec_stipple));
-    vec4 a = vec4(1.0);
-    if (hl_spec_dsf != uint(HL_DSF_OFF)) {
-        hl_pixel p = hl_look(ids);
-        hl_dsf_taps t = hl_read_quad(g, vec2(0.0));
-        a = hl_accept(t, p, hl_threshold(p, g.side));
-        if (hl_spec_fill != 0u && a == vec4(0.0))
-            return hl_fill_light(g, p, t);
-    }
-    vec4 w = hl_stipple_weights(g.f, a, hl_spec_cone != 0u);
-    return hl_fetch_light(hl_texel(g, vec2(0.0, 0.0))) * w.x +
-           hl_fetch_light(hl_texel(g, vec2(1.0, 0.0))) * w.y +
-           hl_fetch_light(hl_texel(g, vec2(0.0, 1.0))) * w.z +
-           hl_fetch_light(hl_texel(g, vec2(1.0, 1.0))) * w.w;
+    bool cone = hl_spec_cone != 0u;
+    if (hl_spec_dsf == uint(HL_DSF_OFF))
+        return hl_weigh_samples(g, hl_stipple_weights(g.f, vec4(1.0), cone));
+    hl_pixel p = hl_look(ids);
+    hl_dsf_taps t = hl_read_quad(g, vec2(0.0));
+    vec4 a = hl_accept(t, p, hl_threshold(p, g.side));
+    vec4 w = hl_stipple_weights(g.f, a, cone);
+    if (hl_spec_fill == 0u)
+        return hl_weigh_samples(g, w);
+    bool lost = a == vec4(0.0);
+    w = hl_lost_weights(w, hl_bilinear(g.f), p, t, lost);
+    if (hl_spec_fill != 1u)
+        return hl_weigh_samples(g, w);
+    return hl_fill_light(g, p, hl_weigh_samples(g, w), lost);
 }
 
 /* ids: the varying HL_VARY_IDS as it comes. */

@@ -160,7 +160,7 @@ void ck_lavapipe(struct hl_caps *c)
         .draw_ns = 1500.0f, .vertex_ns = 150.0f, .pixel_ns = 1.5f,
         .fetch_ns = 1.2f, .blend_ns = 1.9f, .light_ns = 2.4f,
         .light_flat_ns = 1.5f, .light_gather_ns = 8.0f, .readback_ns = 0.5f,
-        .sync_ns = 15000.0f };
+        .sync_ns = 15000.0f, .untaken = 1.0f };
 }
 
 /* ---- numbers ---------------------------------------------------------- */

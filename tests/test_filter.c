@@ -119,7 +119,7 @@ static uint32_t bright_pixels(enum hl_fill fill, uint32_t *lost)
     scene.needs.fill = fill;
     fk_prepare(&run, &scene, HL_PIPELINE_INFERRED);
     assert_int_equal(fk_create(&run), HL_OK);
-    assert_int_equal(run.plan.fill_nearest, fill != HL_FILL_BILINEAR);
+    assert_int_equal(run.plan.fill, fill);
     float *p = draw(&run);
     assert_int_equal(hl_frame_inspect(run.r, &scene.frame, HL_INSPECT_IDS,
                                       ids, sizeof ids), HL_OK);
@@ -150,7 +150,7 @@ static void wires_keep_their_light(void **state)
         ck_open_as(&m, backend, profiles[i]);
         wire(&m);
         uint32_t all = bright_pixels(HL_FILL_BILINEAR, &lost);
-        uint32_t few = bright_pixels(HL_FILL_AUTO, &again);
+        uint32_t few = bright_pixels(HL_FILL_NEAREST, &again);
         print_message("%s: %u without taps, %u bright, filled %u\n",
                       profiles[i], lost, all, few);
         assert_true(lost >= 20 && lost == again);
@@ -317,18 +317,18 @@ static void one_sample_a_pixel(void **state)
     n.light_height = n.height;
     struct hl_plan p = plan_of(&hl_profile_native, n, HL_DEVICE_CPU);
     assert_int_equal(p.dsf, HL_DSF_EXACT);
-    assert_false(p.dsf_bilinear || p.fill_nearest);
+    assert_true(!p.dsf_bilinear && p.fill == HL_FILL_AUTO);
     assert_null(con_reason(&p, HL_WHY_FILL));
     n.blended = true;
     n.translucency = HL_TRANSLUCENCY_2X2;
     p = plan_of(&hl_profile_native, n, HL_DEVICE_CPU);
     assert_int_equal(p.dsf, HL_DSF_SLOPE);
-    assert_true(p.dsf_bilinear && p.fill_nearest);
-    assert_true(con_reason(&p, HL_WHY_FILL)->arg[0] == 1);
+    assert_true(p.dsf_bilinear && p.fill == HL_FILL_DEPTH);
+    assert_true(con_reason(&p, HL_WHY_FILL)->arg[0] == HL_FILL_DEPTH);
     n.fill = HL_FILL_BILINEAR;
     p = plan_of(&hl_profile_native, n, HL_DEVICE_CPU);
-    assert_false(p.fill_nearest);
-    assert_true(con_reason(&p, HL_WHY_FILL)->arg[0] == 0);
+    assert_int_equal(p.fill, HL_FILL_BILINEAR);
+    assert_true(con_reason(&p, HL_WHY_FILL)->arg[0] == HL_FILL_BILINEAR);
 }
 
 #define DRAWN(name) \

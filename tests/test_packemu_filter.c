@@ -153,21 +153,10 @@ static struct pixel pixel_of(uint32_t i)
     return p;
 }
 
-/* The texel that fills a pixel without taps. */
-static struct at filling(const struct pixel *p)
+/* The sample that fills a pixel without taps; false: there is none near. */
+static bool filling(const struct pixel *p, struct at *best)
 {
-    struct at best = { 0, 0 };
     float nearest = 1e9f;
-    for (int t = 0; t < 4; t++) {
-        struct at a = texel(p->x + (t & 1), p->y + (t >> 1), p->side, p->cell);
-        bool same = p->id == 0 || (float)l.dsf[a.y][a.x][1] == p->id;
-        float miss = fabsf(depth_at(a) - p->z) + (same ? 0 : 200);
-        if (miss < nearest) {
-            nearest = miss;
-            best = a;
-        }
-    }
-    nearest = 1e9f;
     for (int n = 0; n < 16; n++) {
         int dx = (n >> 2 & 1) * 2 - 1 + (n & 1);
         int dy = (n >> 3) * 2 - 1 + (n >> 1 & 1);
@@ -178,9 +167,33 @@ static struct at filling(const struct pixel *p)
             !accepts(p, a, 2 * (float)p->side))
             continue;
         nearest = x * x + y * y;
-        best = a;
+        *best = a;
     }
-    return best;
+    return nearest < 1e9f;
+}
+
+/* Bilinear weights over distances in depth, a tenth of the pixel's added. */
+static void weigh_by_depth(const struct pixel *p, float want[4])
+{
+    hl_vec4 b = hl_bilinear(p->f);
+    const float k4[4] = { b.x, b.y, b.z, b.w };
+    double w[4], sum = 0;
+    for (int t = 0; t < 4; t++) {
+        struct at a = texel(p->x + (t & 1), p->y + (t >> 1), p->side, p->cell);
+        w[t] = ((double)k4[t] + 0.001) /
+               (fabs((double)depth_at(a) - (double)p->z) +
+                0.1 * (double)p->z);
+        sum += w[t];
+    }
+    for (int c = 0; c < 4; c++) {
+        double x = 0;
+        for (int t = 0; t < 4; t++) {
+            struct at a = texel(p->x + (t & 1), p->y + (t >> 1), p->side,
+                                p->cell);
+            x += (double)l.light[a.y][a.x][c] * w[t] / sum;
+        }
+        want[c] = (float)x;
+    }
 }
 
 static void weigh(const struct pixel *p, float want[4])
@@ -204,7 +217,9 @@ static void weigh(const struct pixel *p, float want[4])
 
 /* Light of all fragments; how many taps were accepted, as bits of `seen`. The
  * same operations again, but for the order of a sum of four products of at
- * most 40: 8 roundings of 2^-24. */
+ * most 40: 8 roundings of 2^-24; by depth, with a weight's own 14 or so (a
+ * distance, two sums, a quotient, the sum of weights, the product with its
+ * inverse), 24. */
 static void check(uint32_t *seen)
 {
     hl_pe_read_lights(&k.draw, &k.in, out);
@@ -214,12 +229,15 @@ static void check(uint32_t *seen)
         int n = (int)(p.accept[0] + p.accept[1] + p.accept[2] + p.accept[3]);
         *seen |= 1u << n;
         weigh(&p, want);
-        if (n == 0 && k.program.spec[HL_SPEC_FILL].u) {
-            struct at a = filling(&p);
+        uint32_t fill = k.program.spec[HL_SPEC_FILL].u;
+        struct at a = { 0, 0 };
+        bool far = false;
+        if (n == 0 && fill == 1 && filling(&p, &a))
             memcpy(want, l.light[a.y][a.x], sizeof want);
-        }
+        else if (n == 0 && fill && (far = true))
+            weigh_by_depth(&p, want);
         for (int c = 0; c < 3; c++)
-            ck_near(out[c][i], want[c], 40 * 8 / 16777216.0);
+            ck_near(out[c][i], want[c], (far ? 40 * 24 : 40 * 8) / 16777216.0);
     }
 }
 
@@ -237,7 +255,7 @@ static void samples_of_a_pattern(void **state)
         uint32_t side = i & 1 ? 4 : 2, seen = 0, off = i / 16 == 2;
         k.program.spec[HL_SPEC_STIPPLE].u = side;
         k.program.spec[HL_SPEC_STIPPLE_CONE].u = i >> 1 & 1;
-        k.program.spec[HL_SPEC_FILL].u = i >> 2 & 1;
+        k.program.spec[HL_SPEC_FILL].u = i & 1 ? 2 * (i >> 2 & 1) : i >> 2 & 1;
         k.program.spec[HL_SPEC_DSF].u = filters[i / 16];
         for (uint32_t n = 0; n < side * side; n++) {
             fill_random();
@@ -374,7 +392,7 @@ static void taps_leave_without_a_jump(void **state)
 
 /* ---- a wire -------------------------------------------------------------- */
 
-enum { WIRE = 6, WIRE_Z = 3, WALL_Z = 9 };
+enum { WIRE = 6, WIRE_Z = 3, NEAR_Z = 5, WALL_Z = 9 };
 
 /* Light of the texel that a pixel of the wire at L x gets: x + 100 y. */
 static float wire_light(float x)
@@ -393,7 +411,8 @@ static float wire_light(float x)
 }
 
 /* One texel wide, before a wall. Within two texels its own sample is found,
- * on either side; beyond, the tap nearest in depth, here of row 5. */
+ * on either side; beyond, the taps by depth: halfway between 408 and 409,
+ * which misses by less, and 0.001 of each of the next row. */
 static void a_wire_finds_its_sample(void **state)
 {
     (void)state;
@@ -401,7 +420,7 @@ static void a_wire_finds_its_sample(void **state)
     k.program.spec[HL_SPEC_FILL].u = 1;
     for (int i = 0; i < LW * LH; i++) {
         int x = i % LW, y = i / LW;
-        float z = x == WIRE ? WIRE_Z : y == 5 && x == 9 ? WALL_Z - 1 : WALL_Z;
+        float z = x == WIRE ? WIRE_Z : y == 4 && x == 9 ? NEAR_Z : WALL_Z;
         l.dsf[y][x][0] = (uint16_t)(z * 655.35f + 0.5f);
         l.dsf[y][x][1] = (uint16_t)(x == WIRE ? ID : ID + 1);
         l.light[y][x][0] = (float)(x + 100 * y);
@@ -412,7 +431,15 @@ static void a_wire_finds_its_sample(void **state)
     assert_true(wire_light(7.25f) == 406);
     assert_true(wire_light(7.75f) == 406);
     assert_true(wire_light(4.25f) == 406);
-    assert_true(wire_light(8.5f) == 509);
+    double m = 0.1 * WIRE_Z, far = 1 / (WALL_Z - WIRE_Z + m);
+    double near = 1 / (NEAR_Z - WIRE_Z + m);
+    double by_depth = (0.501 * (408 * far + 409 * near) +
+                       0.001 * (508 + 509) * far) /
+                      (0.503 * far + 0.501 * near);
+    /* Depths are stored to half of 1/655.35 m: less than 1e-3 of either
+     * distance, and so of the unit between the two. */
+    assert_true(by_depth > 408.6);
+    assert_true(fabs((double)wire_light(8.5f) - by_depth) < 2e-3);
     k.program.spec[HL_SPEC_FILL].u = 0;
     assert_true(fabsf(wire_light(7.25f) - 407.25f) < 1e-3f);
     kk_close(&k);

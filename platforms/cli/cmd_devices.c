@@ -153,6 +153,7 @@ static void add_cost(cJSON *caps, const struct hl_cost_model *c)
     hlc_json_real(j, "light_gather", (double)c->light_gather_ns, 6);
     hlc_json_real(j, "readback", (double)c->readback_ns, 6);
     hlc_json_real(j, "sync", (double)c->sync_ns, 6);
+    hlc_json_real(j, "untaken", (double)c->untaken, 6);
 }
 
 static cJSON *caps_json(const struct hl_caps *c)

@@ -86,7 +86,7 @@ static const struct hlc_option rows[] = {
       "24 drawings that collide in sight in fig7" },
     { "dsf", "auto|off|slope|constant", DSF, R | P, 0, 0, 0,
       "filter of the light buffer" },
-    { "fill", "auto|nearest|bilinear", FILL, R | P, 0, 0, 0,
+    { "fill", "auto|nearest|bilinear|depth", FILL, R | P, 0, 0, 0,
       "what a pixel reads whose taps are all rejected" },
     { "fetch", "auto|gather|bilinear", FETCH, R | P, 0, 0, 0,
       "how the filter fetches light" },

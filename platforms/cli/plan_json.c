@@ -120,7 +120,8 @@ static void add_light(cJSON *j, const struct hl_plan *p)
     hlc_json_real(dsf, "k", (double)p->dsf_k, 6);
     hlc_json_real(dsf, "c", (double)p->dsf_c, 6);
     hlc_json_real(dsf, "tau", (double)p->dsf_tau, 6);
-    text(dsf, "fill", p->fill_nearest ? "nearest" : "bilinear");
+    text(dsf, "fill", p->fill == HL_FILL_NEAREST ? "nearest"
+                      : p->fill == HL_FILL_DEPTH ? "depth" : "bilinear");
     text(dsf, "fetch", p->dsf_bilinear ? "bilinear" : "gather");
     cJSON_AddBoolToObject(dsf, "centroid", p->centroid);
 }

@@ -213,7 +213,7 @@ static const struct row rows[HL_WHY_COUNT] = {
         "stencil volume" },
     [HL_WHY_FILL] = { "fill", "K 3",
         "a pixel whose taps are all rejected reads the nearest sample of its "
-        "own surface within two texels, else the tap nearest in depth" },
+        "own surface within two texels, else all four by nearness in depth" },
     [HL_WHY_FETCH] = { "fetch", "K 7.1",
         "light is fetched filtered where no tap is rejected, else by four "
         "taps: predicted =2 ns a pixel, four always =1" },
@@ -236,9 +236,6 @@ static const char *other_way(enum hl_reason why)
     case HL_WHY_STIPPLE_FILTER:
         return "a translucent pixel weighs the four samples of its pattern "
                "bilinearly";
-    case HL_WHY_FILL:
-        return "a pixel whose taps are all rejected reads all four of them, "
-               "as published";
     case HL_WHY_FETCH:
         return "light is fetched by four taps: predicted =1 ns a pixel, "
                "filtered where none is rejected =2";
@@ -248,6 +245,17 @@ static const char *other_way(enum hl_reason why)
     default:
         return NULL;
     }
+}
+
+static const char *fill_text(enum hl_fill fill, const char *nearest)
+{
+    return fill == HL_FILL_BILINEAR
+           ? "a pixel whose taps are all rejected reads all four of them, as "
+             "published"
+           : fill == HL_FILL_DEPTH
+           ? "a pixel whose taps are all rejected reads all four by nearness "
+             "in depth; to look further would cost every pixel $1 of $2 ns"
+           : nearest;
 }
 
 static const struct row *row_of(enum hl_reason why)
@@ -313,6 +321,8 @@ void hlc_reason_text(const struct hl_plan *plan, uint32_t i, char *out,
         return;
     if (other_way(reason->why) && !(reason->arg[0] > 0))
         t = other_way(reason->why);
+    if (reason->why == HL_WHY_FILL)
+        t = fill_text((enum hl_fill)(int)reason->arg[0], t);
     /* Forward shading reads each material; nothing is shared or stored. */
     if (reason->why == HL_WHY_EXPONENT_CONSTANT &&
         plan->pipeline != HL_PIPELINE_INFERRED)

@@ -301,7 +301,8 @@ static void print_settings(FILE *out, const struct hl_plan *p)
             (double)p->light_scale);
     fprintf(out, "  dsf %s, k %.3g, c %.3g, tau %.3g%s%s%s\n",
             hlc_dsf_name(p->dsf), (double)p->dsf_k, (double)p->dsf_c,
-            (double)p->dsf_tau, p->fill_nearest ? ", fill nearest" : "",
+            (double)p->dsf_tau, p->fill == HL_FILL_NEAREST ? ", fill nearest"
+            : p->fill == HL_FILL_DEPTH ? ", fill by depth" : "",
             p->dsf_bilinear ? ", filtered fetch" : "",
             p->centroid ? ", centroid" : "");
 }

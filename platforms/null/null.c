@@ -52,7 +52,7 @@ static void default_caps(struct hl_caps *c)
         c->format[i].samples = 1 | 2 | 4 | 8;
     }
     /* Equal costs: a plan for null shows the rules, not a machine. */
-    c->cost = (struct hl_cost_model){ 1000, 1, 1, 1, 1, 1, 1, 1, 1, 1000 };
+    c->cost = (struct hl_cost_model){ 1000, 1, 1, 1, 1, 1, 1, 1, 1, 1000, 0 };
 }
 
 static enum hl_result null_open(void *state, struct hl_device *device,

@@ -19,7 +19,7 @@ struct lost {
     uint32_t n, at[HL_PE_BATCH];
     float z[HL_PE_BATCH], id[HL_PE_BATCH], half_step[HL_PE_BATCH];
     float fx[HL_PE_BATCH], fy[HL_PE_BATCH], threshold[HL_PE_BATCH];
-    float nearest[HL_PE_BATCH];
+    float nearest[HL_PE_BATCH], weight[4][HL_PE_BATCH];
     float x[HL_PE_BATCH], y[HL_PE_BATCH];        /* from sample b            */
 };
 
@@ -90,21 +90,25 @@ static void gather_lost(const struct pe_draw *d,
     }
 }
 
-/* The one of the four that is nearest in depth. */
-static void nearest_in_depth(const struct pe_draw *d,
-                             const struct pe_dsf *dsf, struct lost *l)
+/* How much the four count where nothing nearer is found. */
+static void weigh_lost(const struct pe_draw *d, const struct pe_dsf *dsf,
+                       struct lost *l)
 {
-    float far = pe_frame(d)->depth.w, step = far / 65535.0f;
+    float step = pe_frame(d)->depth.w / 65535.0f;
     for (uint32_t k = 0; k < l->n; k++) {
         uint32_t i = l->at[k];
-        float miss[4];
+        float gap[4];
         for (int t = 0; t < 4; t++)
-            miss[t] = hl_fill_miss(dsf->depth[t][i] * step, dsf->id[t][i],
-                                   l->z[k], l->id[k], l->half_step[k], far);
-        hl_vec2 tap = hl_fill_tap(hl_v4(miss[0], miss[1], miss[2], miss[3]));
+            gap[t] = hl_abs(dsf->depth[t][i] * step - l->z[k]);
+        hl_vec4 w = hl_fill_weights(hl_bilinear(hl_v2(l->fx[k], l->fy[k])),
+                                    hl_v4(gap[0], gap[1], gap[2], gap[3]),
+                                    l->z[k]);
+        l->weight[0][k] = w.x;
+        l->weight[1][k] = w.y;
+        l->weight[2][k] = w.z;
+        l->weight[3][k] = w.w;
         l->nearest[k] = HL_FILL_NONE;
-        l->x[k] = tap.x;
-        l->y[k] = tap.y;
+        l->x[k] = l->y[k] = 0.0f;
     }
 }
 
@@ -159,19 +163,48 @@ static void try_quad(const struct pe_draw *d, const struct lattice *g,
                    dsf.depth[s], dsf.id[s]);
 }
 
+/* Light of sample (x, y) from the base, of each its own. */
+static void fetch_lost(const struct pe_draw *d, const struct lattice *g,
+                       const struct lost *l, const float *x, const float *y,
+                       float light[4][HL_PE_BATCH])
+{
+    int32_t tx[HL_PE_BATCH], ty[HL_PE_BATCH];
+    for (uint32_t k = 0; k < l->n; k++) {
+        tx[k] = texel_of(g, 0, g->bx[l->at[k]] + x[k]);
+        ty[k] = texel_of(g, 1, g->by[l->at[k]] + y[k]);
+    }
+    pe_fetch_light(d, tx, ty, l->n, light);
+}
+
+/* Light of the four, weighed: taps 00, 10, 01, 11 in turn, as the stage's
+ * sum is. */
+static void weighed_lost(const struct pe_draw *d, const struct lattice *g,
+                         const struct lost *l, float sum[4][HL_PE_BATCH])
+{
+    float light[4][HL_PE_BATCH], x[HL_PE_BATCH], y[HL_PE_BATCH];
+    memset(sum, 0, 4 * sizeof sum[0]);
+    for (int t = 0; t < 4; t++) {
+        for (uint32_t k = 0; k < l->n; k++) {
+            x[k] = (float)(t & 1);
+            y[k] = (float)(t >> 1);
+        }
+        fetch_lost(d, g, l, x, y, light);
+        for (int c = 0; c < 4; c++)
+            for (uint32_t k = 0; k < l->n; k++)
+                sum[c][k] += light[c][k] * l->weight[t][k];
+    }
+}
+
 static void light_lost(const struct pe_draw *d, const struct lattice *g,
                        const struct lost *l, float (*out)[HL_PE_BATCH])
 {
-    int32_t x[HL_PE_BATCH], y[HL_PE_BATCH];
-    float light[4][HL_PE_BATCH];
-    for (uint32_t k = 0; k < l->n; k++) {
-        x[k] = texel_of(g, 0, g->bx[l->at[k]] + l->x[k]);
-        y[k] = texel_of(g, 1, g->by[l->at[k]] + l->y[k]);
-    }
-    pe_fetch_light(d, x, y, l->n, light);
+    float light[4][HL_PE_BATCH], sum[4][HL_PE_BATCH];
+    weighed_lost(d, g, l, sum);
+    fetch_lost(d, g, l, l->x, l->y, light);
     for (int c = 0; c < 4; c++)
         for (uint32_t k = 0; k < l->n; k++)
-            out[c][l->at[k]] = light[c][k];
+            out[c][l->at[k]] = l->nearest[k] < HL_FILL_NONE ? light[c][k]
+                                                            : sum[c][k];
 }
 
 static void fill(const struct pe_draw *d, const struct hl_pe_fragments *f,
@@ -179,8 +212,8 @@ static void fill(const struct pe_draw *d, const struct hl_pe_fragments *f,
                  struct lost *l, float (*out)[HL_PE_BATCH])
 {
     gather_lost(d, f, g, l);
-    nearest_in_depth(d, dsf, l);
-    for (int q = 0; q < 4; q++)
+    weigh_lost(d, dsf, l);
+    for (int q = 0; q < 4 && pe_spec_uint(d, HL_SPEC_FILL) == 1; q++)
         try_quad(d, g, q & 1 ? 1.0f : -1.0f, q & 2 ? 1.0f : -1.0f, l);
     light_lost(d, g, l, out);
 }
