@@ -62,7 +62,8 @@ enum hl_shadows {
 /* What a pixel reads whose DSF taps are all rejected. */
 enum hl_fill {
     HL_FILL_AUTO = 0,              /* NEAREST; DEPTH on machines that run what
-                                    * a condition leaves out as well         */
+                                    * a condition leaves out as well, but for
+                                    * 4 x 4 patterns                         */
     HL_FILL_NEAREST,               /* the nearest sample of its own surface
                                     * within two L texels, else DEPTH        */
     HL_FILL_BILINEAR,              /* all four, as published (K 3)           */

@@ -21,8 +21,10 @@ static void choose_fill(struct hl_plan *p, const struct hl_ask *ask)
     double around = (double)c->untaken * LOOK_AROUND * (double)c->fetch_ns;
     double pixel = (double)c->pixel_ns + 8 * (double)c->fetch_ns;
     p->fill = ask->n.fill;
+    /* Below fifteen layers one texel in sixteen is an opaque surface's. */
     if (p->fill == HL_FILL_AUTO)
-        p->fill = around > pixel / 10 ? HL_FILL_DEPTH : HL_FILL_NEAREST;
+        p->fill = around > pixel / 10 && p->stipple != 4 ? HL_FILL_DEPTH
+                                                         : HL_FILL_NEAREST;
     hl_plan_why(p, HL_WHY_FILL, (float)p->fill, (float)around, (float)pixel,
                 0);
 }
