@@ -98,11 +98,9 @@ static bool is_gbuffer(int kind)
            kind == PROG_DECAL_GBUFFER;
 }
 
-struct hl_draw *hl_draw_mesh(struct hl_renderer *r, const struct hl_frame *f,
-                             uint32_t visible, int kind)
+struct hl_draw *hl_draw_item(struct hl_renderer *r, const struct hl_item *it,
+                             int kind)
 {
-    const struct hl_visible *v = &r->visible[visible];
-    const struct hl_item *it = &f->items[v->item];
     struct hl_draw *d = hl_draw_begin(r);
     d->prog = r->prog[it->surface][kind];
     memcpy(d->vertex, it->vertex, sizeof d->vertex);
@@ -111,12 +109,21 @@ struct hl_draw *hl_draw_mesh(struct hl_renderer *r, const struct hl_frame *f,
     d->first = it->first;
     d->count = it->count;
     d->base_vertex = it->base_vertex;
+    return d;
+}
+
+struct hl_draw *hl_draw_mesh(struct hl_renderer *r, const struct hl_frame *f,
+                             uint32_t visible, int kind)
+{
+    const struct hl_visible *v = &r->visible[visible];
+    const struct hl_item *it = &f->items[v->item];
+    struct hl_draw *d = hl_draw_item(r, it, kind);
     d->scissor = is_gbuffer(kind) || kind == PROG_STIPPLE_ID
                  ? r->light_scissor : r->frame_scissor;
     hl_bind_uniform(r, d, HL_SLOT_FRAME, r->frame_offset,
-                 sizeof(struct hl_frame_block));
+                    sizeof(struct hl_frame_block));
     hl_bind_uniform(r, d, HL_SLOT_OBJECT, v->object,
-                 sizeof(struct hl_object_block));
+                    sizeof(struct hl_object_block));
     hl_bind_uniform(r, d, HL_SLOT_MATERIAL, v->material, v->material_bytes);
     if (kind == PROG_BLENDED)
         hl_bind_list(r, d);

@@ -138,14 +138,7 @@ static void draw_caster(struct hl_renderer *r, const struct hl_frame *f,
     memset(&b, 0, sizeof b);
     hl_shadow_clip(clip, m, face, it->world);
     memcpy(&b.clip, clip, sizeof clip);
-    struct hl_draw *d = hl_draw_begin(r);
-    d->prog = r->prog[it->surface][PROG_SHADOW_DEPTH];
-    memcpy(d->vertex, it->vertex, sizeof d->vertex);
-    d->index = it->index;
-    d->index16 = it->index16;
-    d->first = it->first;
-    d->count = it->count;
-    d->base_vertex = it->base_vertex;
+    struct hl_draw *d = hl_draw_item(r, it, PROG_SHADOW_DEPTH);
     d->scissor = hl_shadow_rect(m, face);
     hl_bind_uniform(r, d, HL_SLOT_FRAME, r->frame_offset,
                     sizeof(struct hl_frame_block));

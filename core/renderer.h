@@ -215,6 +215,9 @@ void hl_maps_shadowed(struct hl_renderer *, const struct hl_frame *);
 
 /* frame.c */
 struct hl_draw *hl_draw_begin(struct hl_renderer *);
+/* An item's buffers and its surface's program, nothing bound. */
+struct hl_draw *hl_draw_item(struct hl_renderer *, const struct hl_item *,
+                             int kind);
 struct hl_draw *hl_draw_mesh(struct hl_renderer *, const struct hl_frame *,
                              uint32_t visible, int kind);
 void hl_bind_uniform(struct hl_renderer *, struct hl_draw *, int slot,
