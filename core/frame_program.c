@@ -45,8 +45,9 @@ void hl_shift_specs(const struct hl_plan *plan, struct hl_prog_desc *p)
 /* HL_SPEC_FILL. */
 static uint32_t fill_of(const struct hl_plan *plan)
 {
-    return plan->fill == HL_FILL_NEAREST ? 1
-           : plan->fill == HL_FILL_DEPTH ? 2 : 0;
+    uint32_t through = plan->stipple ? HL_FILL_THROUGH : 0;
+    return plan->fill == HL_FILL_NEAREST ? 1 | through
+           : plan->fill == HL_FILL_DEPTH ? 2 | through : 0;
 }
 
 /* Everything of a plan that a stage which reads the L-buffer needs. */
@@ -222,7 +223,7 @@ static void to_blended_material(const struct hl_plan *plan,
      * for at any price, and these surfaces are few. */
     for (uint32_t i = 0; i < p->n_specs; i++)
         if (p->spec[i].id == HL_SPEC_FILL && plan->fill == HL_FILL_DEPTH)
-            p->spec[i].value = 1;
+            p->spec[i].value = 1 | HL_FILL_THROUGH;
 }
 
 static void to_forward(const struct hl_plan *plan, struct hl_prog_desc *p,

@@ -326,6 +326,12 @@ vec4 hl_fill_light(hl_lattice g, hl_pixel p, vec4 light, bool lost)
     return nearest < HL_FILL_NONE ? hl_fetch_light(hl_texel(g, best)) : light;
 }
 
+bool hl_hidden(hl_pixel p, hl_dsf_taps t, float threshold)
+{
+    return (hl_spec_fill & uint(HL_FILL_THROUGH)) == 0u &&
+           hl_fill_hidden(t.depth * p.step, p.z, threshold);
+}
+
 /* Weights b of what is accepted, or of what misses least. */
 vec4 hl_lost_weights(vec4 w, vec4 b, hl_pixel p, hl_dsf_taps t, bool lost)
 {
@@ -348,7 +354,8 @@ vec4 hl_read_opaque(vec4 ids)
     }
     hl_pixel p = hl_look(ids);
     hl_dsf_taps taps = hl_read_dsf(t.middle);
-    vec4 a = hl_accept(taps, p, hl_threshold(p, 1.0));
+    float threshold = hl_threshold(p, 1.0);
+    vec4 a = hl_accept(taps, p, threshold);
 #ifdef HL_FLOAT_LIGHT
     if (hl_spec_bilinear != 0u && a == vec4(1.0))
         return hl_filter_light(t);
@@ -356,9 +363,9 @@ vec4 hl_read_opaque(vec4 ids)
     vec4 w = hl_dsf_weights(b, a);
     if (hl_spec_fill == 0u)
         return hl_weigh_light(t.middle, w);
-    bool lost = a == vec4(0.0);
+    bool lost = a == vec4(0.0) && !hl_hidden(p, taps, threshold);
     w = hl_lost_weights(w, b, p, taps, lost);
-    if (hl_spec_fill != 1u)
+    if ((hl_spec_fill & 1u) == 0u)
         return hl_weigh_light(t.middle, w);
     return hl_fill_light(hl_find_lattice(vec2(0.0), 1.0), p,
                          hl_weigh_light(t.middle, w), lost);
@@ -384,13 +391,14 @@ vec4 hl_read_stippled(vec4 ids)
         return hl_weigh_samples(g, hl_stipple_weights(g.f, vec4(1.0), cone));
     hl_pixel p = hl_look(ids);
     hl_dsf_taps t = hl_read_quad(g, vec2(0.0));
-    vec4 a = hl_accept(t, p, hl_threshold(p, g.side));
+    float threshold = hl_threshold(p, g.side);
+    vec4 a = hl_accept(t, p, threshold);
     vec4 w = hl_stipple_weights(g.f, a, cone);
     if (hl_spec_fill == 0u)
         return hl_weigh_samples(g, w);
-    bool lost = a == vec4(0.0);
+    bool lost = a == vec4(0.0) && !hl_hidden(p, t, threshold);
     w = hl_lost_weights(w, hl_bilinear(g.f), p, t, lost);
-    if (hl_spec_fill != 1u)
+    if ((hl_spec_fill & 1u) == 0u)
         return hl_weigh_samples(g, w);
     return hl_fill_light(g, p, hl_weigh_samples(g, w), lost);
 }

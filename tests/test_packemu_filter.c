@@ -172,6 +172,17 @@ static bool filling(const struct pixel *p, struct at *best)
     return nearest < 1e9f;
 }
 
+/* All four taps before the pixel. */
+static bool hidden(const struct pixel *p)
+{
+    for (int t = 0; t < 4; t++)
+        if (depth_at(texel(p->x + (t & 1), p->y + (t >> 1), p->side,
+                           p->cell)) >=
+            p->z - threshold(p, (float)p->side))
+            return false;
+    return true;
+}
+
 /* Bilinear weights over distances in depth, a tenth of the pixel's added. */
 static void weigh_by_depth(const struct pixel *p, float want[4])
 {
@@ -232,9 +243,10 @@ static void check(uint32_t *seen)
         uint32_t fill = k.program.spec[HL_SPEC_FILL].u;
         struct at a = { 0, 0 };
         bool far = false;
-        if (n == 0 && fill == 1 && filling(&p, &a))
+        bool lost = n == 0 && (fill & HL_FILL_THROUGH || !hidden(&p));
+        if (lost && fill & 1 && filling(&p, &a))
             memcpy(want, l.light[a.y][a.x], sizeof want);
-        else if (n == 0 && fill && (far = true))
+        else if (lost && fill && (far = true))
             weigh_by_depth(&p, want);
         for (int c = 0; c < 3; c++)
             ck_near(out[c][i], want[c], (far ? 40 * 24 : 40 * 8) / 16777216.0);
@@ -255,7 +267,8 @@ static void samples_of_a_pattern(void **state)
         uint32_t side = i & 1 ? 4 : 2, seen = 0, off = i / 16 == 2;
         k.program.spec[HL_SPEC_STIPPLE].u = side;
         k.program.spec[HL_SPEC_STIPPLE_CONE].u = i >> 1 & 1;
-        k.program.spec[HL_SPEC_FILL].u = i & 1 ? 2 * (i >> 2 & 1) : i >> 2 & 1;
+        k.program.spec[HL_SPEC_FILL].u = !(i >> 2 & 1) ? 0
+            : i & 1 ? 2 : i & 8 ? 1 : 1 | HL_FILL_THROUGH;
         k.program.spec[HL_SPEC_DSF].u = filters[i / 16];
         for (uint32_t n = 0; n < side * side; n++) {
             fill_random();

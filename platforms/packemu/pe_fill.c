@@ -63,12 +63,47 @@ static inline int32_t texel_of(const struct lattice *g, int axis, float s)
 
 /* ---- where all four are rejected ----------------------------------------- */
 
+/* Most batches have none: looked for in a loop without branches, which lanes
+ * beyond n may at worst make look again. */
+PE_WIDE
+static bool any_lost(float (*a)[HL_PE_BATCH], uint32_t n)
+{
+    uint32_t lost = 0;
+    for (uint32_t i = 0; i < PE_LANES(n); i++)
+        lost |= a[0][i] + a[1][i] + a[2][i] + a[3][i] == 0.0f;
+    return lost != 0;
+}
+
 static void find_lost(float (*a)[HL_PE_BATCH], uint32_t n, struct lost *l)
 {
     l->n = 0;
+    if (!any_lost(a, n))
+        return;
     for (uint32_t i = 0; i < n; i++)
         if (a[0][i] + a[1][i] + a[2][i] + a[3][i] == 0.0f)
             l->at[l->n++] = i;
+}
+
+/* Less those that are hidden, most likely. */
+static void drop_hidden(const struct pe_draw *d,
+                        const struct hl_pe_fragments *f,
+                        const struct pe_dsf *dsf, float side, struct lost *l)
+{
+    float step = pe_frame(d)->depth.w / 65535.0f;
+    float threshold[HL_PE_BATCH], z[HL_PE_BATCH];
+    uint32_t n = l->n;
+    if (pe_spec_uint(d, HL_SPEC_FILL) & HL_FILL_THROUGH)
+        return;
+    l->n = 0;
+    pe_pixel_depths(d, f, z);
+    pe_thresholds(d, f, side, threshold);
+    for (uint32_t k = 0; k < n; k++) {
+        uint32_t i = l->at[k];
+        hl_vec4 tap = hl_v4(dsf->depth[0][i] * step, dsf->depth[1][i] * step,
+                            dsf->depth[2][i] * step, dsf->depth[3][i] * step);
+        if (!hl_fill_hidden(tap, z[i], threshold[i]))
+            l->at[l->n++] = i;
+    }
 }
 
 static void gather_lost(const struct pe_draw *d,
@@ -213,7 +248,7 @@ static void fill(const struct pe_draw *d, const struct hl_pe_fragments *f,
 {
     gather_lost(d, f, g, l);
     weigh_lost(d, dsf, l);
-    for (int q = 0; q < 4 && pe_spec_uint(d, HL_SPEC_FILL) == 1; q++)
+    for (int q = 0; q < 4 && (pe_spec_uint(d, HL_SPEC_FILL) & 1u); q++)
         try_quad(d, g, q & 1 ? 1.0f : -1.0f, q & 2 ? 1.0f : -1.0f, l);
     light_lost(d, g, l, out);
 }
@@ -225,6 +260,8 @@ void pe_fill_light(const struct pe_draw *d, const struct hl_pe_fragments *f,
     struct lost l;
     struct lattice g;
     find_lost(a, f->n, &l);
+    if (l.n > 0)
+        drop_hidden(d, f, dsf, 1.0f, &l);
     if (l.n == 0)
         return;
     find_lattice(d, f, hl_v2(0.0f, 0.0f), 1.0f, &g);
@@ -282,7 +319,11 @@ void pe_stippled_light(const struct pe_draw *d,
     else
         pe_accept(d, f, &dsf, g.side, a);
     weigh(&g, a, cone, f->n, light, out);
+    if (!pe_spec_uint(d, HL_SPEC_FILL))
+        return;
     find_lost(a, f->n, &l);
-    if (l.n > 0 && pe_spec_uint(d, HL_SPEC_FILL))
+    if (l.n > 0)
+        drop_hidden(d, f, &dsf, g.side, &l);
+    if (l.n > 0)
         fill(d, f, &g, &dsf, &l, out);
 }

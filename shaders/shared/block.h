@@ -73,7 +73,10 @@
 #define HL_SPEC_DEPTH_READ 23    /* HL_DEPTH_READ_*                          */
 #define HL_SPEC_STIPPLE 24       /* of translucent surfaces: 0, or 2 or 4     */
 #define HL_SPEC_STIPPLE_CONE 25  /* 1: cone filter, else bilinear            */
-#define HL_SPEC_FILL 26          /* hl_fill: 1 NEAREST, 2 DEPTH, 0 BILINEAR  */
+#define HL_SPEC_FILL 26          /* hl_fill: 1 NEAREST, 2 DEPTH, 0 BILINEAR;
+                                  * + HL_FILL_THROUGH: what lies before may
+                                  * be translucent                           */
+#define HL_FILL_THROUGH 4
 #define HL_SPEC_BILINEAR 27      /* 1: hl_fetch BILINEAR; light is sampled as
                                   * numbers and filtered                     */
 #define HL_SPEC_BRDFS 28         /* 1: the exponent channel is a pair, and has
