@@ -25,8 +25,8 @@ enum hl_refusal hl_plan_shadow_maps(struct hl_plan *p,
     if (hl_plan_light_depth(p, ask, HL_USE_TARGET | HL_USE_SAMPLED, &row) ==
         HL_FORMAT_NONE)
         return HL_REFUSED_DEPTH_FORMAT;
-    if ((asked && asked < SIZE_LEAST) ||
-        asked > ask->caps->max_tex_dim / columns(ask))
+    uint32_t most = ask->caps->max_tex_dim / columns(ask);
+    if (most < SIZE_LEAST || (asked && asked < SIZE_LEAST) || asked > most)
         return HL_REFUSED_SHADOWS;
     hl_plan_why(p, HL_WHY_SHADOW_MAPS, (float)ask->n.n_shadow_lights,
                 (float)(columns(ask) * rows(ask)), 0, 0);

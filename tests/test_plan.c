@@ -708,6 +708,29 @@ static void many_blends_need_a_better_frame(void **state)
 
 /* ---- costs ------------------------------------------------------------ */
 
+/* Six maps stand three in a row, of 64 texels at least. */
+static void small_machines_have_no_maps(void **state)
+{
+    (void)state;
+    struct hl_needs n = usual();
+    struct hl_caps c;
+    struct hl_plan p;
+    enum hl_refusal why;
+    ck_lavapipe(&c);
+    n.width = n.height = 64;
+    n.shadows = HL_SHADOWS_MAPS;
+    n.n_shadow_lights = 1;
+    n.shadow_points = true;
+    c.max_tex_dim = 192;
+    assert_int_equal(hl_plan_make(&p, HL_PIPELINE_INFERRED, &n, &c, &why),
+                     HL_OK);
+    assert_int_equal(p.shadow_size, 64);
+    c.max_tex_dim = 191;
+    assert_int_equal(hl_plan_make(&p, HL_PIPELINE_INFERRED, &n, &c, &why),
+                     HL_ERR_UNSUPPORTED);
+    assert_int_equal(why, HL_REFUSED_SHADOWS);
+}
+
 static void few_lights_are_drawn_forward_many_inferred(void **state)
 {
     (void)state;
@@ -764,6 +787,7 @@ int main(void)
         cmocka_unit_test(more_is_never_cheaper),
         cmocka_unit_test(auto_is_the_cheapest),
         cmocka_unit_test(each_bad_need_is_named),
+        cmocka_unit_test(small_machines_have_no_maps),
         cmocka_unit_test(one_side_of_the_light_size_is_not_a_size),
         cmocka_unit_test(each_missing_capability_is_named),
         cmocka_unit_test(nothing_to_plan_with_is_refused),
