@@ -60,12 +60,13 @@ CLI_LIB := $(filter-out %/main.o %/packemu_main.o,$(call objs,platforms/cli/*.c)
 PLAIN := $(patsubst %,$(B)/obj/platforms/host/%.o,builder builtin builtin_brdf builtin_cutout builtin_hall builtin_layers \
     builtin_paper builtin_shadow builtin_stress builtin_works file image_pfm mesh_clean scene_finish shapes util) \
   $(patsubst %,$(B)/obj/platforms/cli/%.o,bridge bridge_ids bridge_mesh bridge_shadow bridge_texture fail plan_reason \
-    plan_text readback render_device setup spread tap value view)
+    plan_text readback render_device setup shot spread tap value view)
+CHART := $(call objs,platforms/chart/*.c) $(call objs,platforms/stability/*.c) $(call objs,platforms/calibrate/*.c)
 LIST := $(B)/obj/platforms/platforms.o
 
 LIBS := $(foreach x,halflight halflight-null halflight-packemu halflight-profiles halflight-conform halflight-vulkan \
     halflight-gl,$(call lib,$(x)))
-TOOL_LIBS := $(foreach x,cli host reference list conform vulkan gl packemu profiles null,$(call lib,halflight-$(x))) \
+TOOL_LIBS := $(foreach x,chart cli host reference list conform vulkan gl packemu profiles null,$(call lib,halflight-$(x))) \
   $(call lib,halflight)
 PACKEMU_LIBS := $(call lib,halflight-conform) $(call lib,halflight-packemu) $(call lib,halflight-profiles) $(call lib,halflight)
 
@@ -86,6 +87,8 @@ $(call lib,halflight-host): $(HOST)
 $(call lib,halflight-reference): $(REFERENCE)
 $(call lib,halflight-cli): $(CLI_LIB)
 $(call lib,halflight-list): $(LIST)
+# Sweeps over the tool's own parts: chart, stability, calibrate.
+$(call lib,halflight-chart): $(CHART)
 %.a:
 	@mkdir -p $(@D); rm -f $@
 	@echo "  AR   $@"
@@ -99,7 +102,8 @@ $(B)/halflight-packemu: $(B)/obj/platforms/cli/packemu_main.o $(PLAIN) $(PACKEMU
 	@echo "  LINK $@"
 	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ -pthread -lm
 
-$(B)/obj/platforms/packemu/%.o $(B)/obj/platforms/host/%.o $(B)/obj/platforms/cli/%.o $(B)/obj/platforms/reference/%.o $(B)/obj/tests/%.o: EXTRA := $(HOST_CFLAGS)
+$(B)/obj/platforms/packemu/%.o $(B)/obj/platforms/host/%.o $(B)/obj/platforms/cli/%.o $(B)/obj/platforms/chart/%.o $(B)/obj/platforms/stability/%.o \
+  $(B)/obj/platforms/calibrate/%.o $(B)/obj/platforms/reference/%.o $(B)/obj/tests/%.o: EXTRA := $(HOST_CFLAGS)
 $(B)/obj/%.o: %.c
 	@mkdir -p $(@D)
 	@echo "  CC   $<"

@@ -95,6 +95,18 @@ enum hl_dsf {
     HL_DSF_CONSTANT_TAU            /* the paper's one threshold              */
 };
 
+/* What a scene's pictures show of the method's errors, measured once by
+ * drawing them (an engine: once a level; the tool: platforms/cli/probe.h), as
+ * RMS of 8-bit sRGB codes, 0..255, frames of this size and these samples. 0:
+ * unknown, and hl_caps.error's value counts; less than 1e-6: none. */
+struct hl_probe {
+    float full;    /* inferred with an L-buffer of the frame's size, 32-bit
+                    * floats, against forward                                */
+    float half;    /* the same with half of that a side, against that        */
+    float eight;   /* with RGBA8_UNORM at the frame's size, against that     */
+    float eight_blends;      /* mean blends an L texel had in it; 0 = 1      */
+};
+
 struct hl_needs {
     uint32_t width, height;        /* frame, pixels; required                */
     /* L-buffer texels; 0 = 5/8 (K Fig. 9), or the most that EDRAM holds. */
@@ -116,7 +128,14 @@ struct hl_needs {
     bool blended;                  /* some surfaces are translucent          */
     float far;                     /* metres; 0 = 1000: depth quantisation   */
     float peak;                    /* bound of summed light at any point     */
-    float max_error;               /* 8-bit sRGB codes; 0 = 1                */
+    float max_error;               /* of encodings: 8-bit sRGB codes; 0 = 1  */
+    /* Bounds of the whole, 0 = none: of the predicted error of the picture,
+     * RMS of 8-bit sRGB codes, and of the predicted cost. The cheapest plan
+     * within budget_codes; without that, the most accurate within budget_ms;
+     * pipeline, L-buffer size and L-buffer format are chosen where they are
+     * not given. */
+    float budget_codes, budget_ms;
+    struct hl_probe probe;
     bool decals;                   /* surfaces that change others' normals   */
     uint32_t blended_layers;       /* most translucent objects over a pixel;
                                     * 0 = unknown                            */
@@ -139,6 +158,9 @@ struct hl_needs {
     float dsf_k, dsf_c;            /* 0 = 1.5 and 0.001                      */
     float dsf_tau;                 /* constant threshold, share of z; 0 = 1 % */
     enum hl_format light_format;
+    /* RG16_UNORM, RG8_UNORM or RG16_FLOAT; NONE = the first, or what a
+     * profile rules. */
+    enum hl_format normal_format;
     enum hl_half_pixel half_pixel;
     enum hl_translucency translucency;
     enum hl_stipple_filter stipple_filter;

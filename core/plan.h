@@ -86,6 +86,7 @@ enum hl_reason {
     HL_WHY_SHADOW_VOLUMES, HL_WHY_SHADOW_MAPS, HL_WHY_SHADOW_SIZE,
     HL_WHY_INFINITE_FAR, HL_WHY_VOLUME_TEXELS, HL_WHY_FILL, HL_WHY_FETCH,
     HL_WHY_CENTROID, HL_WHY_MOTION, HL_WHY_BRDFS, HL_WHY_NO_LIGHT_PASS,
+    HL_WHY_BUDGET_ERROR, HL_WHY_BUDGET_COST, HL_WHY_BUDGET_MISSED,
     HL_WHY_COUNT
 };
 
@@ -95,7 +96,10 @@ enum hl_reason {
  * SHADOW_SIZE texels; VOLUME_TEXELS texels; FILL enum hl_fill, nanoseconds
  * that NEAREST adds to every pixel, DEPTH's whole pixel; FETCH 1 for
  * bilinear, nanoseconds a pixel gathered, filtered; CENTROID 1 for on;
- * MOTION, BRDFS format. */
+ * MOTION, BRDFS format; BUDGET_ERROR budget, predicted error, predicted ms,
+ * plans compared; BUDGET_COST budget, predicted ms, predicted error, plans
+ * compared; BUDGET_MISSED (of a refusal) budget of error or 0, of cost or 0,
+ * the least predicted error, the least predicted cost. */
 
 /* Which need could not be met. */
 enum hl_refusal {
@@ -104,6 +108,7 @@ enum hl_refusal {
     HL_REFUSED_LIGHT_FORMAT, HL_REFUSED_DEPTH_FORMAT, HL_REFUSED_STORAGE,
     HL_REFUSED_VALUE, HL_REFUSED_PIPELINE, HL_REFUSED_EDRAM,
     HL_REFUSED_HALF_PIXEL, HL_REFUSED_SHADOWS, HL_REFUSED_MOTION,
+    HL_REFUSED_BUDGET,
     HL_REFUSED_COUNT
 };
 
@@ -196,6 +201,9 @@ struct hl_plan {
     float moved_per_pixel;         /* bytes read and written a frame pixel   */
     float light_error;             /* predicted relative error of the light  */
     float cost_ms;                 /* predicted by caps.cost                 */
+    /* Predicted error of the picture by caps.error and needs.probe, RMS of
+     * 8-bit sRGB codes; forward pipelines: of their encodings alone. */
+    float error_codes;
 };
 
 /* The cheapest plan of `pipeline` (AUTO: of all) that meets `needs` within

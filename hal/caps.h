@@ -73,6 +73,22 @@ struct hl_cost_model {
     /* Share of what a stage's condition leaves out that is paid all the same:
      * 1 where vectors run both sides under a mask, 0 where they branch. */
     float untaken;
+    /* Of one format: blending a texel of it, fetching one. 0: blend_ns for
+     * every 8 bytes; fetch_ns, and as much again for every 8 bytes past 8. */
+    float format_blend_ns[HL_FORMAT_COUNT];
+    float format_fetch_ns[HL_FORMAT_COUNT];
+};
+
+/* How far inferred pictures are off, as RMS of 8-bit sRGB codes (0..255), by
+ * what `halflight calibrate` measured. A planner puts together full, what the
+ * size of the L-buffer adds, and what its format adds, as independent errors
+ * are: by the root of the sum of squares. Zeros: values of core's own. */
+struct hl_error_model {
+    /* Of an L-buffer of k / 8 of the frame a side: its error as a share of
+     * that of one half; [4] is 1, [8] is 0. */
+    float eighths[9];
+    float full, half, eight; /* as hl_probe's, for scenes without a probe    */
+    float margin;            /* factor on the whole; 0 = 1                   */
 };
 
 enum { HL_CAPS_NAME = 96 };
@@ -94,6 +110,7 @@ struct hl_caps {
     bool clip_zero_to_one;   /* clip space z is 0..w, not -w..w              */
     struct hl_format_caps format[HL_FORMAT_COUNT];
     struct hl_cost_model cost;
+    struct hl_error_model error;
     struct hl_profile profile;   /* rules to plan by                         */
     bool console_memory;     /* keeps memory as the profile's machine does;
                               * else packed formats stand in for it          */

@@ -15,7 +15,7 @@
  * - Nothing is printed, no global state, memory only through the hooks. */
 #include "hal/caps.h"
 
-#define HL_VERSION 2u        /* raised whenever a public struct changes      */
+#define HL_VERSION 3u        /* raised whenever a public struct changes      */
 
 struct hl_device;
 struct hl_backend;           /* hal/backend.h                                */

@@ -44,6 +44,9 @@ arrows includes_conform platforms/conform "$hal_public|hal/text\.h|$core_public|
 arrows includes_host platforms/host 'platforms/host/'
 arrows includes_reference platforms/reference 'platforms/reference/|platforms/host/scene\.h'
 arrows includes_tool platforms/cli "$hal_public|$core_public|shaders/shared/|platforms/"
+for part in chart stability calibrate; do
+    arrows includes_$part platforms/$part "$hal_public|$core_public|shaders/shared/|platforms/(chart|cli|host|profiles|reference|$part)/|platforms/platforms\.h"
+done
 grep -rnE '#include[[:space:]]*<(vulkan|GL|EGL|GLFW|assimp|cjson|png|jpeglib|pthread|stdio|stdlib|unistd)' \
     core hal shaders > "$tmp/out"
 verdict no_platform_header_below

@@ -27,7 +27,7 @@ static int open_all(struct planned *p, const struct hlc_options *o)
         code = hlc_world_open(&p->world, &p->machine, &p->scene, o);
     if (code == HLC_DONE)
         code = hlc_plan_open(&p->frame, &p->needs, &p->plan, &p->world,
-                             hl_device_caps(p->machine.device), o);
+                             &p->machine.caps, o);
     return code;
 }
 

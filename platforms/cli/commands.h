@@ -19,6 +19,9 @@ int hlc_cmd_scene(const struct hlc_options *);
 int hlc_cmd_compare(const struct hlc_options *);
 int hlc_cmd_devices(const struct hlc_options *);
 int hlc_cmd_conform(const struct hlc_options *);
+int hlc_cmd_chart(const struct hlc_options *);       /* platforms/chart      */
+int hlc_cmd_calibrate(const struct hlc_options *);
+int hlc_cmd_stability(const struct hlc_options *);   /* platforms/stability  */
 
 /* Print "halflight: <text>" and a line end to stderr; return `code`. Line
  * ends inside become blanks. */

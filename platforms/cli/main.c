@@ -25,6 +25,9 @@ static int run(const struct hlc_options *o)
     case HLC_SCENE: return hlc_cmd_scene(o);
     case HLC_COMPARE: return hlc_cmd_compare(o);
     case HLC_CONFORM: return hlc_cmd_conform(o);
+    case HLC_CHART: return hlc_cmd_chart(o);
+    case HLC_STABILITY: return hlc_cmd_stability(o);
+    case HLC_CALIBRATE: return hlc_cmd_calibrate(o);
     case HLC_VERSION: printf("halflight %u\n", HL_VERSION); return HLC_DONE;
     default: return help(o);
     }

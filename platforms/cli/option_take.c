@@ -107,12 +107,13 @@ static int take_backend(struct hlc_options *o, const struct hlc_option *r,
                     ? "no such backend" : "not built in", names);
 }
 
-static int take_format(struct hlc_options *o, const struct hlc_option *r,
+static int take_format(void *at, const struct hlc_option *r,
                        const char *value)
 {
     for (int i = HL_FORMAT_NONE + 1; i < HL_FORMAT_COUNT; i++)
         if (!strcmp(hl_format_info((enum hl_format)i)->name, value)) {
-            o->light_format = (enum hl_format)i;
+            enum hl_format format = (enum hl_format)i;
+            memcpy(at, &format, sizeof format);
             return 0;
         }
     return bad(r, value, "no such format; see 'halflight devices --json -'");
@@ -206,7 +207,10 @@ int hlc_option_take(struct hlc_options *o, const struct hlc_option *r,
     case AMBIENT: return take_color(o->ambient, &o->has_ambient, r, value);
     case BACKGROUND:
         return take_color(o->background, &o->has_background, r, value);
-    case LIGHT_FORMAT: return take_format(o, r, value);
+    case FORMAT: return take_format(at, r, value);
+    case ROUNDS:
+        o->has_rounds = true;
+        return take_count(at, r, value);
     case MIN_PSNR: return take_min_psnr(o, r, value);
     case JITTER: return take_jitter(o, r, value);
     case MAX_ERROR: return take_max_error(o, r, value);

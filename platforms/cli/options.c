@@ -13,23 +13,26 @@
 #define S (1u << HLC_SCENE)
 #define C (1u << HLC_COMPARE)
 #define F (1u << HLC_CONFORM)
+#define H (1u << HLC_CHART)
+#define T (1u << HLC_STABILITY)
+#define K (1u << HLC_CALIBRATE)
 #define AT(member) offsetof(struct hlc_options, member)
 
 static const struct hlc_option rows[] = {
-    { "backend", "vulkan|gl|packemu|null", BACKEND, R | P | D | F, 0, 0, 0,
+    { "backend", "vulkan|gl|packemu|null", BACKEND, R | P | D | F | T | K, 0, 0, 0,
       "default: the first that has a device" },
-    { "device", "N|NAME", TEXT, R | P | F, AT(device), 0, 0,
+    { "device", "N|NAME", TEXT, R | P | F | T | K, AT(device), 0, 0,
       "index or part of a name, see 'halflight devices'" },
-    { "gl-context", "osmesa|egl", GL_CONTEXT, R | P | F, 0, 0, 0,
+    { "gl-context", "osmesa|egl", GL_CONTEXT, R | P | F | T | K, 0, 0, 0,
       "of --backend gl; default: osmesa, then egl" },
     { "validation", NULL, FLAG, R | P | F, AT(validation), 0, 0,
       "driver validation layers" },
-    { "profile", "native|dx10|xbox360|ps3", PROFILE, R | P | F, 0, 0, 0,
+    { "profile", "native|dx10|xbox360|ps3", PROFILE, R | P | F | T | K, 0, 0, 0,
       "console whose rules hold; default: the device's own" },
     { "pipeline", "auto|forward|forward-multipass|inferred|reference",
       PIPELINE, R | P, 0, 0, 0, "default: the cheapest" },
-    { "size", "WxH", SIZE, R | P, AT(width), 1, HLC_SIZE_MAX,
-      "pixels; default 1280x720" },
+    { "size", "WxH", SIZE, R | P | H | K, AT(width), 1, HLC_SIZE_MAX,
+      "pixels; default 1280x720, of chart and calibrate 640x360" },
     { "light-size", "WxH", SIZE, R | P, AT(light_width), 1, HLC_SIZE_MAX,
       "of the light buffer; default 5/8 of the size" },
     { "samples", "1|2|4|8", SAMPLES, R | P, 0, 0, 0, "a pixel; default 1" },
@@ -47,8 +50,12 @@ static const struct hlc_option rows[] = {
     { "no-normal-maps", NULL, FLAG, R | P, AT(no_normal_maps), 0, 0, "" },
     { "no-specular", NULL, FLAG, R | P, AT(no_specular), 0, 0, "" },
     { "max-error", "E", MAX_ERROR, R | P | C, 0, 0, 0,
-      "render, plan: 8-bit codes a plan may be off; compare: largest linear "
-      "difference that passes" },
+      "render, plan: RMS 8-bit codes that a plan may be off, by prediction; "
+      "compare: largest linear difference that passes" },
+    { "max-cost", "MS", REAL, R | P, AT(max_cost), 1e-6, HLC_FLOAT_RANGE,
+      "that a plan may take, by prediction" },
+    { "calibration", "FILE", TEXT, R | P | H, AT(calibration), 0, 0,
+      "of 'halflight calibrate', to predict by" },
     { "light-path", "auto|rects|tiles|lists|volumes", LIGHT_PATH, R | P, 0,
       0, 0, "how the light pass finds its lights" },
     { "light-batch", "K", COUNT, R | P, AT(light_batch), 1, HL_BATCH_MAX,
@@ -77,8 +84,10 @@ static const struct hlc_option rows[] = {
       "of forward-multipass; default on" },
     { "half-pixel", "auto|none|state|vertex", HALF_PIXEL, R | P, 0, 0, 0,
       "who puts integer pixel centres at halves; default: the state" },
-    { "light-format", "FORMAT", LIGHT_FORMAT, R | P, 0, 0, 0,
+    { "light-format", "FORMAT", FORMAT, R | P, AT(light_format), 0, 0,
       "of the light buffer, such as RGBA16_FLOAT" },
+    { "normal-format", "FORMAT", FORMAT, R | P, AT(normal_format), 0, 0,
+      "of the normals: RG16_UNORM, RG8_UNORM or RG16_FLOAT" },
     { "ids-scheme", "unique|colored|paper", IDS_SCHEME, R | P, 0, 0, 0,
       "numbers of regions; default unique" },
     { "ids-seed", "N", COUNT, R | P, AT(ids_seed), 0, 1e9,
@@ -103,11 +112,25 @@ static const struct hlc_option rows[] = {
     { "dsf-c", "C", REAL, R | P, AT(dsf_c), 1e-9, 1, "share of depth" },
     { "dsf-tau", "T", REAL, R | P, AT(dsf_tau), 1e-9, 1,
       "constant threshold, share of depth" },
-    { "out", "FILE", TEXT, R | S, AT(out), 0, 0,
-      "render: PNG; scene: prefix of the files" },
+    { "out", "FILE", TEXT, R | S | H | T | K, AT(out), 0, 0,
+      "render: PNG; scene: prefix of the files; calibrate: FILE; chart, "
+      "stability: folder" },
+    { "machines", "LIST", TEXT, H, AT(machines), 0, 0,
+      "backends and profiles, such as vulkan,packemu:ps3; default vulkan, "
+      "packemu and its profiles" },
+    { "fast", NULL, FLAG, H | T, AT(fast), 0, 0,
+      "fewer points, smaller pictures: under two minutes" },
+    { "rounds", "N", ROUNDS, H, AT(rounds), 0, 1000,
+      "timed rounds a point, against one baseline in turn; 0: no times" },
+    { "fresh", NULL, FLAG, H, AT(afresh), 0, 0,
+      "begin anew where an unfinished sweep could be gone on with" },
+    { "check", "FILE", TEXT, H | T, AT(check), 0, 0,
+      "of --save: what became worse than in it is a failure" },
+    { "save", "FILE", TEXT, H | T, AT(save), 0, 0,
+      "write this run's figures for --check" },
     { "hdr", "F.pfm", TEXT, R, AT(hdr), 0, 0, "linear picture" },
     { "exposure", "EV", REAL, R, AT(exposure), -64, 64, "of the PNG" },
-    { "json", "FILE", TEXT, R | P | D | C | F, AT(json), 0, 0,
+    { "json", "FILE", TEXT, R | P | D | C | F | H | T | K, AT(json), 0, 0,
       "'-' is stdout; see docs/json.md" },
     { "dump", "DIR", TEXT, R, AT(dump), 0, 0, "every target as an image" },
     { "ids", "F.png", TEXT, R | C, AT(ids), 0, 0,
@@ -119,10 +142,11 @@ static const struct hlc_option rows[] = {
       "frames before them; default 3" },
     { "supersample", "N", COUNT, R, AT(supersample), 1, 64,
       "N x N samples a pixel, pipeline reference only" },
-    { "list", NULL, FLAG, F, AT(list), 0, 0,
-      "the checks that must run, and the defects they must catch" },
-    { "only", "NAMES", TEXT, F, AT(only), 0, 0,
-      "checks whose names begin with it" },
+    { "list", NULL, FLAG, F | T, AT(list), 0, 0,
+      "conform: the checks that must run, and the defects they must catch; "
+      "stability: the rows" },
+    { "only", "NAMES", TEXT, F | T, AT(only), 0, 0,
+      "checks or rows whose names begin with it" },
     { "mutant", "NAME", TEXT, F, AT(mutant), 0, 0,
       "put a defect in, which checks must then fail for" },
     { "seed", "N", COUNT, F, AT(seed), 1, 1e9,
@@ -151,6 +175,12 @@ static const struct command commands[HLC_COMMAND_COUNT] = {
                       "how far a PNG or PFM is from another" },
     [HLC_CONFORM] = { "conform", "", 0, 0,
                       "check formats, packing and blending on a device" },
+    [HLC_CHART] = { "chart", "SCENE...", 1, HLC_ARGS,
+                    "error over cost of every way to draw, CSV and SVG" },
+    [HLC_STABILITY] = { "stability", "", 0, 0,
+                        "where each method fails, CSV and SVG" },
+    [HLC_CALIBRATE] = { "calibrate", "[SCENE...]", 0, HLC_ARGS,
+                        "measure what the planner predicts by" },
 };
 
 /* ---- the line ----------------------------------------------------------- */
@@ -280,6 +310,11 @@ int hlc_options_parse(struct hlc_options *out, int argc, char **argv)
     if (argc < 2)
         return 0;
     int code = parse_command(out, argv[1]);
+    /* Hundreds of pictures, or measured where the frame is small. */
+    if (out->command == HLC_CHART || out->command == HLC_CALIBRATE) {
+        out->width = 640;
+        out->height = 360;
+    }
     return code ? code : parse_rest(out, argc, argv);
 }
 

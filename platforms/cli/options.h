@@ -10,7 +10,8 @@
 
 enum hlc_command {
     HLC_HELP = 0, HLC_VERSION, HLC_RENDER, HLC_PLAN, HLC_DEVICES, HLC_SCENE,
-    HLC_COMPARE, HLC_CONFORM, HLC_COMMAND_COUNT
+    HLC_COMPARE, HLC_CONFORM, HLC_CHART, HLC_STABILITY, HLC_CALIBRATE,
+    HLC_COMMAND_COUNT
 };
 
 /* How --ids-scheme names regions in the DSF buffer (core/ids.h). */
@@ -23,11 +24,11 @@ enum hlc_ids_scheme {
 /* What becomes of alpha masked materials. */
 enum hlc_mask { HLC_MASK_SCENE = 0, HLC_MASK_TEST, HLC_MASK_BLEND };
 
-enum { HLC_SIZE_MAX = 16384, HLC_FRAMES_MAX = 100000, HLC_ARGS = 2 };
+enum { HLC_SIZE_MAX = 16384, HLC_FRAMES_MAX = 100000, HLC_ARGS = 64 };
 
 struct hlc_options {
     enum hlc_command command;
-    const char *arg[HLC_ARGS];   /* SCENE, or TEST and REF; NULL past n_args */
+    const char *arg[HLC_ARGS];   /* SCENEs, or TEST and REF; NULL past n_args */
     uint32_t n_args;
 
     /* machine */
@@ -74,7 +75,7 @@ struct hlc_options {
     double dsf_k, dsf_c, dsf_tau;    /* 0 = planner's                        */
     enum hlc_ids_scheme ids_scheme;
     uint32_t ids_seed;       /* of HLC_IDS_PAPER's random numbers            */
-    enum hl_format light_format;     /* NONE = planner's                     */
+    enum hl_format light_format, normal_format;  /* NONE = planner's         */
     enum hl_half_pixel half_pixel;   /* AUTO                                 */
     uint32_t volume_texels;  /* 0 = planner's                                */
 
@@ -100,10 +101,20 @@ struct hlc_options {
     uint32_t seed;           /* of random cases; 1                           */
     bool list, quick;
 
-    /* --max-error: of a plan in 8-bit sRGB codes, of compare the largest
-     * linear difference that passes. */
+    /* chart, stability, calibrate */
+    const char *machines;    /* "vulkan,packemu:ps3"; NULL: the command's own */
+    const char *check;       /* file of figures to compare with; NULL: none  */
+    const char *save;        /* the same, to write; NULL: none               */
+    uint32_t rounds;         /* timed A/B rounds; 0 = no times               */
+    bool has_rounds;
+    bool fast, afresh;
+
+    /* --max-error: of a plan a bound of its predicted RMS error in 8-bit sRGB
+     * codes, of compare the largest linear difference that passes. */
     bool has_max_error, has_min_psnr;
     double max_error, min_psnr;
+    double max_cost;         /* ms by the planner's prediction; 0 = no bound */
+    const char *calibration; /* file of `calibrate`; NULL: built-in values   */
 };
 
 /* Parse argv[1..]. 0, or an exit code after one line on stderr. */

@@ -227,6 +227,14 @@ static const struct row rows[HL_WHY_COUNT] = {
         "number" },
     [HL_WHY_NO_LIGHT_PASS] = { "no_light_pass", "K 7.1",
         "there is no light to sum: the light pass is left out" },
+    [HL_WHY_BUDGET_ERROR] = { "budget_error", "",
+        "of #3 plans the cheapest within an error of $0 codes: predicted $1 "
+        "codes, $2 ms" },
+    [HL_WHY_BUDGET_COST] = { "budget_cost", "",
+        "of #3 plans the most accurate within $0 ms: predicted $1 ms, $2 "
+        "codes" },
+    [HL_WHY_BUDGET_MISSED] = { "budget_missed", "",
+        "the best plans come to $2 codes and $3 ms" },
 };
 
 /* Of those that decide between two ways, the other: argument 0 is 0. */
@@ -358,13 +366,15 @@ const char *hlc_refusal_text(enum hl_refusal why)
          "them"),
         "forward pipelines have no shadows, and maps have a largest size",
         "motion vectors need the inferred pipeline and a colour target more",
+        "no plan keeps to the budget",
     };
     return text[(unsigned)why < HL_REFUSED_COUNT ? why : 0];
 }
 
 static bool of_refusal(enum hl_reason why)
 {
-    return why >= HL_WHY_EDRAM_SET && why <= HL_WHY_NOT_BLENDABLE;
+    return (why >= HL_WHY_EDRAM_SET && why <= HL_WHY_NOT_BLENDABLE) ||
+           why == HL_WHY_BUDGET_MISSED;
 }
 
 void hlc_refusal_line(const struct hl_plan *refused, enum hl_refusal why,

@@ -59,7 +59,7 @@ static int open_all(struct hlc_render *r)
     int code = hlc_machine_open(&r->machine, r->o);
     if (code != HLC_DONE)
         return code;
-    r->caps = *hl_device_caps(r->machine.device);
+    r->caps = r->machine.caps;
     /* Before the upload, so that a size no machine takes costs no time. */
     if (r->o->width > r->caps.max_tex_dim || r->o->height > r->caps.max_tex_dim)
         return hlc_fail(HLC_BAD, "--size: %s draws at most %u x %u",

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Zlib */
 #include "platforms/cli/setup.h"
+#include <stdio.h>
 #include "platforms/cli/commands.h"
 #include "platforms/cli/plan_text.h"
 
@@ -18,7 +19,8 @@ int hlc_world_open(struct hlc_world *out, const struct hlc_machine *machine,
 }
 
 static int make_plan(struct hl_plan *out, const struct hl_needs *needs,
-                     const struct hl_caps *caps, const struct hlc_options *o)
+                     const struct hl_caps *caps, const struct hlc_options *o,
+                     char line[HLC_PLAN_LINE])
 {
     enum hl_refusal why;
     enum hl_result r = hl_plan_make(out, o->pipeline, needs, caps, &why);
@@ -29,25 +31,33 @@ static int make_plan(struct hl_plan *out, const struct hl_needs *needs,
                    why == HL_REFUSED_DEPTH_FORMAT;
     char text[896];
     hlc_refusal_line(out, why, text, sizeof text);
-    return hlc_fail(machine ? HLC_NO_DEVICE : HLC_BAD, "%s on %s: %s",
-                    hlc_pipeline_name(o->pipeline), caps->device,
-                    text[0] ? text : hl_result_name(r));
+    snprintf(line, HLC_PLAN_LINE, "%s on %s: %s",
+             hlc_pipeline_name(o->pipeline), caps->device,
+             text[0] ? text : hl_result_name(r));
+    return machine ? HLC_NO_DEVICE : HLC_BAD;
 }
 
 /* The plan needs far and the lights in sight, near needs the plan's depth
  * format: so the view is made twice. */
-int hlc_plan_open(struct hl_frame *frame, struct hl_needs *needs,
-                  struct hl_plan *plan, const struct hlc_world *world,
-                  const struct hl_caps *caps, const struct hlc_options *o)
+int hlc_plan_try(struct hl_frame *frame, struct hl_needs *needs,
+                 struct hl_plan *plan, const struct hlc_world *world,
+                 const struct hl_caps *caps, const struct hlc_options *o,
+                 const struct hl_probe *probe, char line[HLC_PLAN_LINE])
 {
     struct hl_camera camera;
     const struct hlh_scene *scene = world->scene;
-    if (!hlc_view(&camera, scene, o->near, o->far, true))
-        return hlc_fail(HLC_BAD, "%s: camera: eye, target, field of view or "
-                        "near and far are not usable", scene->name);
+    char unread[HLC_PLAN_LINE];
+    line = line ? line : unread;
+    if (!hlc_view(&camera, scene, o->near, o->far, true)) {
+        snprintf(line, HLC_PLAN_LINE, "%s: camera: eye, target, field of view "
+                 "or near and far are not usable", scene->name);
+        return HLC_BAD;
+    }
     hlc_frame(frame, world, &camera);
     hlc_needs(needs, world, frame, o);
-    int code = make_plan(plan, needs, caps, o);
+    if (probe)
+        needs->probe = *probe;
+    int code = make_plan(plan, needs, caps, o, line);
     if (code == HLC_DONE)
         hlc_view(&frame->camera, scene, o->near, o->far,
                  plan->reversed_depth);
@@ -56,4 +66,13 @@ int hlc_plan_open(struct hl_frame *frame, struct hl_needs *needs,
     frame->width = o->part_width;
     frame->height = o->part_height;
     return code;
+}
+
+int hlc_plan_open(struct hl_frame *frame, struct hl_needs *needs,
+                  struct hl_plan *plan, const struct hlc_world *world,
+                  const struct hl_caps *caps, const struct hlc_options *o)
+{
+    char line[HLC_PLAN_LINE];
+    int code = hlc_plan_try(frame, needs, plan, world, caps, o, NULL, line);
+    return code == HLC_DONE ? code : hlc_fail(code, "%s", line);
 }

@@ -14,6 +14,7 @@ bool hlc_scene_open(struct hlh_scene *out, const struct hlc_options *o,
 struct hlc_machine {
     struct hl_device *device;
     const struct hl_backend *backend;
+    struct hl_caps caps;         /* the device's, with o->calibration in     */
     char complaint[256];         /* "" or the last error that was logged     */
 };
 /* o->backend, or the first backend that can open a device; `null`, which
@@ -36,4 +37,12 @@ int hlc_world_open(struct hlc_world *out, const struct hlc_machine *machine,
 int hlc_plan_open(struct hl_frame *frame, struct hl_needs *needs,
                   struct hl_plan *plan, const struct hlc_world *world,
                   const struct hl_caps *caps, const struct hlc_options *o);
+
+enum { HLC_PLAN_LINE = 1024 };
+/* The same without a word: what is wrong goes to `line` (may be NULL). With
+ * `probe` not NULL it is what the needs say of the method's errors. */
+int hlc_plan_try(struct hl_frame *frame, struct hl_needs *needs,
+                 struct hl_plan *plan, const struct hlc_world *world,
+                 const struct hl_caps *caps, const struct hlc_options *o,
+                 const struct hl_probe *probe, char line[HLC_PLAN_LINE]);
 #endif

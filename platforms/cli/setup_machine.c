@@ -54,8 +54,10 @@ int hlc_machine_open(struct hlc_machine *m, const struct hlc_options *o)
         if (strcmp(b->name, "null"))
             r = open_on(m, b, o);
     }
-    if (r == HL_OK)
+    if (r == HL_OK) {
+        m->caps = *hl_device_caps(m->device);
         return HLC_DONE;
+    }
     const char *why = m->complaint[0] ? m->complaint : hl_result_name(r);
     if (o->device)
         return hlc_fail(HLC_NO_DEVICE, "--device %s: %s", o->device, why);

@@ -169,7 +169,8 @@ void hlc_needs(struct hl_needs *out, const struct hlc_world *world,
     out->light_height = o->light_height;
     out->samples = o->samples;
     out->far = frame->camera.far;
-    out->max_error = o->has_max_error ? (float)o->max_error : 0;
+    out->budget_codes = o->has_max_error ? (float)o->max_error : 0;
+    out->budget_ms = (float)o->max_cost;
     out->light_path = o->light_path;
     out->batch = o->light_batch;
     out->tile = o->tile;
@@ -180,6 +181,7 @@ void hlc_needs(struct hl_needs *out, const struct hlc_world *world,
     out->dsf_c = (float)o->dsf_c;
     out->dsf_tau = (float)o->dsf_tau;
     out->light_format = o->light_format;
+    out->normal_format = o->normal_format;
     out->half_pixel = o->half_pixel;
     needs_of_features(out, o);
     hl_needs_measure(out, frame, world->surfaces,

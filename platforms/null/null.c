@@ -52,7 +52,11 @@ static void default_caps(struct hl_caps *c)
         c->format[i].samples = 1 | 2 | 4 | 8;
     }
     /* Equal costs: a plan for null shows the rules, not a machine. */
-    c->cost = (struct hl_cost_model){ 1000, 1, 1, 1, 1, 1, 1, 1, 1, 1000, 0 };
+    c->cost = (struct hl_cost_model){
+        .draw_ns = 1000, .vertex_ns = 1, .pixel_ns = 1, .fetch_ns = 1,
+        .blend_ns = 1, .light_ns = 1, .light_flat_ns = 1,
+        .light_gather_ns = 1, .readback_ns = 1, .sync_ns = 1000
+    };
 }
 
 static enum hl_result null_open(void *state, struct hl_device *device,
