@@ -79,7 +79,7 @@ struct hl_draw *hl_draw_begin(struct hl_renderer *r)
 }
 
 void hl_bind_uniform(struct hl_renderer *r, struct hl_draw *d, int slot,
-                         uint32_t offset, uint32_t bytes)
+                     uint32_t offset, uint32_t bytes)
 {
     d->uniform[slot].buf = r->uniform[r->frame];
     d->uniform[slot].offset = offset;

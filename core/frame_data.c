@@ -265,23 +265,24 @@ enum hl_class hl_surface_class(const struct hl_renderer *r, uint32_t surface)
     return s->blended || s->decal ? HL_CLASS_BLENDED : HL_CLASS_OPAQUE;
 }
 
-/* Lights with shadows go to the end: lists and batches have none of them. */
+/* Lights with shadows go to the end: lists and batches have none of them.
+ * Both kinds stay in order, since blended sums round. Those at the end are
+ * bounded a second time, which takes no memory and time by their number. */
 static void part_lights(struct hl_renderer *r, const struct hl_frame *f)
 {
     uint32_t n = 0;
     r->n_plain = r->n_spheres;
     if (r->plan.shadows == HL_SHADOWS_NONE)
         return;
-    for (uint32_t i = 0; i < r->n_spheres; i++) {
-        struct hl_lit_sphere s = r->spheres[i];
-        if (f->lights[s.light].shadow)
-            continue;
-        /* In order: those between move up by one. */
-        for (uint32_t k = i; k > n; k--)
-            r->spheres[k] = r->spheres[k - 1];
-        r->spheres[n++] = s;
-    }
+    for (uint32_t i = 0; i < r->n_spheres; i++)
+        if (!f->lights[r->spheres[i].light].shadow)
+            r->spheres[n++] = r->spheres[i];
     r->n_plain = n;
+    for (uint32_t i = 0; i < f->n_lights && n < r->n_spheres; i++)
+        if (f->lights[i].shadow &&
+            hl_lights_view(&r->spheres[n], &f->lights[i], 1, &r->wide,
+                           r->wide_aspect))
+            r->spheres[n++].light = i;
 }
 
 /* Shell sort, by surface and nearest first (or, blended, farthest first): in

@@ -204,9 +204,25 @@ void hl_light_pass_textures(struct hl_renderer *r)
     t[HL_TEX_EXPONENT].tex = r->target[HL_ROLE_EXPONENT];
 }
 
+/* Without tile lists: by the bounds that needs are measured by, so that the
+ * same lights give no more than needs.peak. */
+static void note_peak(struct hl_renderer *r, const struct hl_frame *f)
+{
+    struct hl_peak_grid g;
+    uint32_t w = f->width ? f->width : r->plan.width;
+    uint32_t h = f->height ? f->height : r->plan.height;
+    hl_peak_begin(&g, &f->camera, (float)w / (float)h);
+    for (uint32_t i = 0; i < r->n_spheres; i++)
+        hl_peak_add(&g, &r->spheres[i], &f->lights[r->spheres[i].light]);
+    r->stats.light_peak = hl_peak_of(&g);
+}
+
 void hl_emit_light_pass(struct hl_renderer *r, const struct hl_frame *f)
 {
     hl_light_pass_textures(r);
+    if (r->plan.light_path == HL_LIGHT_PATH_RECTS ||
+        r->plan.light_path == HL_LIGHT_PATH_VOLUMES)
+        note_peak(r, f);
     if (r->plan.light_path == HL_LIGHT_PATH_TILES)
         draw_tiles(r, f);
     else if (r->plan.light_path == HL_LIGHT_PATH_LISTS)

@@ -149,23 +149,20 @@ static void draw_caster(struct hl_renderer *r, const struct hl_frame *f,
     r->stats.shadow_triangles += it->count / 3;
 }
 
-static bool on_face(const struct hl_renderer *r, uint32_t caster,
-                    const struct hl_shadow_map *m, uint32_t face)
-{
-    return hl_shadow_touches(m, face, &r->maps.casters[caster].box);
-}
-
-/* Pairs with the light, not with its six maps. */
-static uint32_t count_casters(const struct hl_renderer *r,
-                              const struct hl_shadow_map *m)
+/* Finds every caster's faces. How many casters have any: pairs with the
+ * light, not with its six maps. */
+static uint32_t find_faces(struct hl_renderer *r,
+                           const struct hl_shadow_map *m)
 {
     uint32_t n = 0, faces = hl_shadow_faces(m);
-    for (uint32_t i = 0; i < r->maps.n; i++)
+    for (uint32_t i = 0; i < r->maps.n; i++) {
+        struct hl_caster *c = &r->maps.casters[i];
+        c->faces = 0;
         for (uint32_t k = 0; k < faces; k++)
-            if (on_face(r, i, m, k)) {
-                n++;
-                break;
-            }
+            if (hl_shadow_touches(m, k, &c->box))
+                c->faces |= (uint8_t)(1u << k);
+        n += c->faces != 0;
+    }
     return n;
 }
 
@@ -176,7 +173,7 @@ static void draw_map(struct hl_renderer *r, const struct hl_frame *f,
     hl_pass_depth(r, r->target[HL_ROLE_SHADOW_MAP], HL_LOAD_CLEAR, false);
     for (uint32_t k = 0; k < hl_shadow_faces(m); k++)
         for (uint32_t i = 0; i < r->maps.n; i++)
-            if (on_face(r, i, m, k))
+            if (r->maps.casters[i].faces >> k & 1)
                 draw_caster(r, f, i, m, k);
     hl_pass_end(r);
 }
@@ -217,7 +214,7 @@ static void draw_light(struct hl_renderer *r, const struct hl_frame *f,
     if (!hl_sphere_rect(&rect, &r->spheres[i], &r->span))
         return;
     hl_shadow_fit(&m, &f->lights[r->spheres[i].light], t, scene);
-    uint32_t n = count_casters(r, &m);
+    uint32_t n = find_faces(r, &m);
     if (n == 0)
         m.kind = HL_MAP_NONE;
     else

@@ -48,8 +48,8 @@ static size_t tile_bytes_of(const struct hl_renderer_desc *d)
            ? 0x4000000 : tiles * blocks * HL_LIGHTS_BYTES;
 }
 
-/* Objects, motion and materials: 768 bytes an item with alignment; light data: at
- * most every light for every item, and 64 MiB where that would be more. */
+/* Objects, motion and materials: 768 bytes an item with alignment; light data:
+ * at most every light for every item, and 64 MiB where that would be more. */
 static size_t frame_bytes_of(const struct hl_renderer_desc *d)
 {
     if (d->frame_bytes)

@@ -33,14 +33,11 @@ void hl_stippling_carve(struct hl_carve *c, struct hl_renderer *r,
 
 /* ---- what items cover ---------------------------------------------------- */
 
-static uint32_t area_of(const struct hl_stipple_outline *o)
+static uint32_t weight_of(const struct hl_stipple_outline *o)
 {
-    double sum = 0;
-    for (uint32_t i = 0, j = o->n_corners - 1; i < o->n_corners; j = i++)
-        sum += (double)o->x[j] * (double)o->y[i] -
-               (double)o->x[i] * (double)o->y[j];
-    sum = (sum < 0 ? -sum : sum) * 0.5;
-    return sum < HL_STIPPLE_MAX_WEIGHT ? (uint32_t)sum : HL_STIPPLE_MAX_WEIGHT;
+    double area = hl_stipple_area(o);
+    return area < HL_STIPPLE_MAX_WEIGHT ? (uint32_t)area
+                                        : HL_STIPPLE_MAX_WEIGHT;
 }
 
 static uint32_t name_of(const struct hl_frame *f, const struct hl_visible *v)
@@ -63,7 +60,7 @@ static void describe(const struct hl_renderer *r, const struct hl_frame *f,
                             &f->camera, &r->span))
         return;              /* in no texel: overlaps nothing                */
     hl_stipple_bound(o, outline);
-    o->weight = area_of(outline);
+    o->weight = weight_of(outline);
 }
 
 /* ---- assigning ----------------------------------------------------------- */

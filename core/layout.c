@@ -33,14 +33,15 @@ enum hl_format hl_format_pick(const struct hl_caps *caps,
     return HL_FORMAT_NONE;
 }
 
-/* Half a step of the stored -1..1 component. FLOAT: truncating, 2^-bits of
- * the significand, the worse of the two roundings. */
+/* Half a step of the stored -1..1 component. FLOAT: 0..1 is stored, as in all
+ * unsigned formats: below 1 a step is 2^-bits of the significand, truncating,
+ * the worse of the two roundings, and twice that of -1..1. */
 static float component_error(enum hl_format format)
 {
     const struct hl_format_info *f = hl_format_info(format);
     float steps = (float)(((uint64_t)1 << f->bits[0]) - 1u);
     if (f->kind == HL_KIND_FLOAT)
-        return f->bits[0] == 32 ? 6e-8f : 1.0f / 2048;
+        return f->bits[0] == 32 ? 1.2e-7f : 1.0f / 1024;
     /* Signed codes have 65,534 steps from -1 to 1, -32 to 32 as well. */
     if (f->kind == HL_KIND_SNORM || f->kind == HL_KIND_FIXED32)
         return 1.0f / (steps - 1.0f);
@@ -70,11 +71,18 @@ float hl_normal_error(enum hl_format format)
     return (float)(up * 57.29577951);
 }
 
-/* Fixed point: half a step a blend, against a value of 1/8 of the range. */
+/* Steps of fixed point that a blend may be off. llvmpipe cuts channels of ten
+ * bits off. */
+static float rounding(enum hl_format format)
+{
+    return hl_format_info(format)->bits[0] == 10 ? 1.0f : 0.5f;
+}
+
+/* Fixed point: a rounding a blend, against a value of 1/8 of the range. */
 float hl_range_error(enum hl_format format, float range, uint32_t terms)
 {
     float n = terms ? (float)terms : 1.0f;
-    return n * 0.5f * hl_fixed_step(format) / range * 8.0f;
+    return n * rounding(format) * hl_fixed_step(format) / range * 8.0f;
 }
 
 /* FLOAT: |error| <= u * sum of partial sums, and for equal terms the partial
@@ -93,4 +101,34 @@ float hl_accumulation_error(enum hl_format format, uint32_t terms)
     }
     return hl_range_error(format, f->kind == HL_KIND_FIXED32 ? 32.0f : 1.0f,
                           terms);
+}
+
+/* sRGB is linear in the dark: 12.92 times the light. */
+float hl_dark_codes(enum hl_format format, float peak)
+{
+    enum hl_format_kind kind = hl_format_info(format)->kind;
+    bool fixed = kind == HL_KIND_UNORM || kind == HL_KIND_SNORM;
+    return fixed ? rounding(format) * hl_fixed_step(format) * peak * 12.92f *
+                   255.0f : 0;
+}
+
+/* ---- costs -------------------------------------------------------------- */
+
+double hl_blend_ns(const struct hl_caps *caps, enum hl_format format)
+{
+    uint32_t bytes = hl_format_info(format)->bytes;
+    if (bytes == 0)
+        return 0;
+    float own = caps->cost.format_blend_ns[format];
+    return own > 0 ? (double)own : (double)caps->cost.blend_ns * bytes / 8;
+}
+
+double hl_fetch_ns(const struct hl_caps *caps, enum hl_format format)
+{
+    uint32_t bytes = hl_format_info(format)->bytes;
+    if (bytes == 0)
+        return 0;
+    float own = caps->cost.format_fetch_ns[format];
+    return own > 0 ? (double)own
+                   : (double)caps->cost.fetch_ns * ((bytes + 7) / 8);
 }

@@ -95,4 +95,18 @@ void hl_tiles_depth(float *z0, float *z1, const struct hl_tile_grid *,
 float hl_tiles_peak(const struct hl_tile_grid *, const uint32_t *first,
                     const uint32_t *refs, const struct hl_lit_sphere *,
                     const struct hl_light *);
+
+/* The same without lists: on a coarse grid of the screen, each cell sums every
+ * light whose bounds touch it. */
+enum { HL_PEAK_X = 16, HL_PEAK_Y = 9 };
+struct hl_peak_grid {
+    struct hl_span span;
+    float sum[HL_PEAK_X * HL_PEAK_Y];
+};
+void hl_peak_begin(struct hl_peak_grid *, const struct hl_camera *,
+                   float aspect);
+/* False: it touches none. */
+bool hl_peak_add(struct hl_peak_grid *, const struct hl_lit_sphere *,
+                 const struct hl_light *);
+float hl_peak_of(const struct hl_peak_grid *);
 #endif

@@ -8,17 +8,6 @@
 #include "core/vec.h"
 #include "shaders/shared/shade.h"
 
-/* The light's peak is bounded on a coarse grid of the screen: each cell sums
- * every light whose bounds touch it, at full strength. */
-enum { CELLS_X = 16, CELLS_Y = 9 };
-
-static void add_cells(float *cell, const struct hl_rect *b, float x)
-{
-    for (int32_t y = b->y; y < b->y + b->height; y++)
-        for (int32_t i = b->x; i < b->x + b->width; i++)
-            cell[y * CELLS_X + i] += x;
-}
-
 static void measure_shadows(struct hl_needs *n, const struct hl_light *l)
 {
     n->n_shadow_lights += l->shadow;
@@ -30,19 +19,17 @@ static void measure_shadows(struct hl_needs *n, const struct hl_light *l)
 static void measure_lights(struct hl_needs *n, const struct hl_frame *f,
                            float aspect)
 {
-    float cell[CELLS_X * CELLS_Y];
+    struct hl_peak_grid peak;
     double area = 0;
-    uint32_t w = CELLS_X * 64, h = (uint32_t)((float)w / aspect) + 1;
-    struct hl_span coarse = hl_span_whole(CELLS_X, CELLS_Y, &f->camera,
-                                          aspect);
+    uint32_t w = HL_PEAK_X * 64, h = (uint32_t)((float)w / aspect) + 1;
     struct hl_span fine = hl_span_whole(w, h, &f->camera, aspect);
-    memset(cell, 0, sizeof cell);
+    hl_peak_begin(&peak, &f->camera, aspect);
     n->lights = n->n_shadow_lights = 0;
     n->shadow_points = false;
     for (uint32_t i = 0; i < f->n_lights; i++) {
         const struct hl_light *l = &f->lights[i];
         struct hl_lit_sphere s;
-        struct hl_rect b, r;
+        struct hl_rect r;
         if (hl_light_check(l))
             continue;
         measure_shadows(n, l);
@@ -51,16 +38,13 @@ static void measure_lights(struct hl_needs *n, const struct hl_frame *f,
         if (l->kind != HL_POINT)
             n->lights |= HL_LIGHTS_CONES;
         if (!hl_lights_view(&s, l, 1, &f->camera, aspect) ||
-            !hl_sphere_rect(&b, &s, &coarse) || !hl_sphere_rect(&r, &s, &fine))
+            !hl_sphere_rect(&r, &s, &fine) || !hl_peak_add(&peak, &s, l))
             continue;
         /* pi / 4: a sphere's outline in its rectangle. */
         area += 0.785 * r.width * r.height / ((double)w * h);
-        add_cells(cell, &b, hl_light_peak(l));
     }
     n->lights_per_pixel = (float)area;
-    n->peak = 0;
-    for (int i = 0; i < CELLS_X * CELLS_Y; i++)
-        n->peak = cell[i] > n->peak ? cell[i] : n->peak;
+    n->peak = hl_peak_of(&peak);
 }
 
 /* ---- forward draws ------------------------------------------------------ */
@@ -81,14 +65,7 @@ static bool shape_of(struct shape *out, const struct hl_item *it,
                             span))
         return false;
     hl_stipple_bound(&b, &o);
-    double area = 0;
-    for (uint32_t i = 0; i < o.n_corners; i++) {
-        uint32_t k = i + 1 < o.n_corners ? i + 1 : 0;
-        area += (double)o.x[i] * (double)o.y[k] -
-                (double)o.x[k] * (double)o.y[i];
-    }
-    *out = (struct shape){ b.x0, b.y0, b.x1, b.y1,
-                           area < 0 ? area * -0.5 : area * 0.5 };
+    *out = (struct shape){ b.x0, b.y0, b.x1, b.y1, hl_stipple_area(&o) };
     return true;
 }
 

@@ -38,7 +38,7 @@ enum hl_light_path {
 
 /* How translucent surfaces are lit. */
 enum hl_translucency {
-    HL_TRANSLUCENCY_AUTO = 0,      /* the cheaper; 2X2 where there are shadows */
+    HL_TRANSLUCENCY_AUTO = 0,      /* the cheaper; 2X2 where shadows are     */
     HL_TRANSLUCENCY_FORWARD,       /* all of an object's lights in its draw  */
     HL_TRANSLUCENCY_2X2,           /* stippled into the G-buffer (K 4): three
                                     * layers over opaque                     */
@@ -101,10 +101,17 @@ enum hl_dsf {
  * unknown, and hl_caps.error's value counts; less than 1e-6: none. */
 struct hl_probe {
     float full;    /* inferred with an L-buffer of the frame's size, 32-bit
-                    * floats, against forward                                */
+                    * floats, against the truth: a reference renderer's
+                    * picture or, without one, forward's                     */
     float half;    /* the same with half of that a side, against that        */
     float eight;   /* with RGBA8_UNORM at the frame's size, against that     */
     float eight_blends;      /* mean blends an L texel had in it; 0 = 1      */
+    /* As half, with three quarters and with one quarter of that a side:
+     * scenes differ in how the error grows as the L-buffer gets smaller. */
+    float three_quarters, quarter;
+    /* Forward against the truth: edges that are a pixel apart. 0: it is the
+     * truth. */
+    float forward;
 };
 
 struct hl_needs {
@@ -142,7 +149,8 @@ struct hl_needs {
     enum hl_shadows shadows;       /* what lights with hl_light.shadow get   */
     uint32_t n_shadow_lights;
     bool shadow_points;            /* some of them are point lights, or spots
-                                    * of 1.25 radians (HL_SHADOW_WIDE) or more */
+                                    * of HL_SHADOW_WIDE, 1.25 radians, or
+                                    * more                                   */
     bool motion;                   /* a motion vector channel is wanted      */
     bool brdfs;                    /* some material has hl_material.brdf > 0 */
     bool light_depth_bound;        /* the light pass tests depth or stencil

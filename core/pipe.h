@@ -71,10 +71,34 @@ void hl_plan_dsf(struct hl_plan *, const struct hl_ask *);
 /* pipe_centroid.c: after the DSF. */
 void hl_plan_centroid(struct hl_plan *, const struct hl_ask *);
 
-/* pipe_light.c: how the light pass finds its lights, giving nanoseconds, and
- * the L-buffer. */
+/* pipe_light.c: how the light pass finds its lights, giving nanoseconds. */
 double hl_plan_light_path(struct hl_plan *, const struct hl_ask *);
+enum { HL_TILE_DRAW_LIGHTS = 14 };  /* of TILES, about: lights a draw         */
+
+/* pipe_light_format.c: the L-buffer. */
 enum hl_refusal hl_plan_light_format(struct hl_plan *, const struct hl_ask *);
+/* What it will be with the plan's light path: what is asked for, even if it
+ * will be refused, or the best; NONE: there is none. */
+enum hl_format hl_plan_light_pick(const struct hl_plan *,
+                                  const struct hl_ask *);
+/* May a planner that compares formats take this one unasked? */
+bool hl_plan_light_candidate(const struct hl_ask *, enum hl_format);
+/* Blends that one L texel sees, once the path is chosen. */
+uint32_t hl_plan_light_blends(const struct hl_plan *, const struct hl_ask *);
+
+/* plan.c: the plan of one pipeline; `automatic`: nobody asked for it. */
+enum hl_refusal hl_plan_one(struct hl_plan *, enum hl_pipeline,
+                            const struct hl_ask *, bool automatic);
+
+/* plan_budget.c: given the plan that is made without a budget, the one that
+ * keeps it best. */
+enum hl_refusal hl_plan_budget(struct hl_plan *, enum hl_pipeline,
+                               const struct hl_ask *);
+
+/* plan_error.c: error_codes of a plan that is otherwise done. */
+void hl_plan_error(struct hl_plan *, const struct hl_ask *);
+/* A calibration's values, as they can be: finite, none below 0. */
+bool hl_error_model_good(const struct hl_error_model *);
 
 /* plan_console.c: what a profile rules. */
 
@@ -131,6 +155,9 @@ float hl_normal_error(enum hl_format);
 float hl_accumulation_error(enum hl_format, uint32_t terms);
 /* The same where `range` of a fixed point format stands for the peak. */
 float hl_range_error(enum hl_format, float range, uint32_t terms);
+/* 8-bit sRGB codes that one rounding to a fixed point L-buffer, 1 in which
+ * stands for `peak`, moves a white surface in the dark; 0 for floats. */
+float hl_dark_codes(enum hl_format, float peak);
 /* Between codes of the first channel of a fixed point format. */
 float hl_fixed_step(enum hl_format);
 #endif

@@ -11,7 +11,7 @@ static struct hl_plan_target *add_channel(struct hl_plan *p,
                               p->light_height, 1);
 }
 
-/* A target of the normals' kind, which every machine has that gets here, and
+/* A target of the DSF's kind, which every machine has that gets here, and
  * which is of the one format where a pass may have but one. */
 static struct hl_plan_target *add_pair(struct hl_plan *p,
                                        const struct hl_ask *ask,
@@ -20,7 +20,7 @@ static struct hl_plan_target *add_pair(struct hl_plan *p,
     const struct hl_profile_format *row = hl_plan_row(
         ask->caps, ask->caps->profile.two16, HL_FORMAT_NONE,
         HL_USE_TARGET | HL_USE_SAMPLED, 1);
-    enum hl_format f = hl_plan_target(p, HL_ROLE_NORMAL)->format;
+    enum hl_format f = hl_plan_target(p, HL_ROLE_DSF)->format;
     struct hl_plan_target *t = add_channel(p, role, f);
     hl_plan_keep(p, t, ask->caps, row, true);
     return t;

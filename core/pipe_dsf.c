@@ -8,18 +8,25 @@ static bool rejects(const struct hl_plan *p)
     return p->dsf == HL_DSF_SLOPE || p->dsf == HL_DSF_CONSTANT;
 }
 
-/* Fetches of twelve more samples and of one's light. They serve 2 % of the
- * pixels at most in the built-in scenes: a machine that pays them for every
- * pixel (fig8 on lavapipe: 28 % of the frame) does better without. */
-enum { LOOK_AROUND = 17 };
+/* Nanoseconds to fetch a texel of light. */
+static double light_fetch(const struct hl_plan *p, const struct hl_ask *ask)
+{
+    return hl_fetch_ns(ask->caps, hl_plan_target(p, HL_ROLE_LIGHT)->format);
+}
+
+/* Fetches of twelve more samples, and besides of one's light. They serve 2 %
+ * of the pixels at most in the built-in scenes: a machine that pays them for
+ * every pixel (fig8 on lavapipe: 28 % of the frame) does better without. */
+enum { LOOK_AROUND = 16 };
 
 static void choose_fill(struct hl_plan *p, const struct hl_ask *ask)
 {
     if (!rejects(p))
         return;
     const struct hl_cost_model *c = &ask->caps->cost;
-    double around = (double)c->untaken * LOOK_AROUND * (double)c->fetch_ns;
-    double pixel = (double)c->pixel_ns + 8 * (double)c->fetch_ns;
+    double fetch = (double)c->fetch_ns, light = light_fetch(p, ask);
+    double around = (double)c->untaken * (LOOK_AROUND * fetch + light);
+    double pixel = (double)c->pixel_ns + 4 * fetch + 4 * light;
     p->fill = ask->n.fill;
     /* Below fifteen layers one texel in sixteen is an opaque surface's. */
     if (p->fill == HL_FILL_AUTO)
@@ -45,7 +52,7 @@ static bool can_filter(const struct hl_ask *ask,
 static void fetch_costs(const struct hl_plan *p, const struct hl_ask *ask,
                         double *gathered, double *filtered)
 {
-    double fetch = (double)ask->caps->cost.fetch_ns;
+    double fetch = light_fetch(p, ask);
     bool software = ask->caps->kind == HL_DEVICE_CPU;
     double rejected = rejects(p) ? 0.25 : 0.0;
     *gathered = 4 * fetch;

@@ -50,6 +50,22 @@ static void add_depth(struct hl_plan *p, const struct hl_ask *ask,
     t->read_by = 1u << HL_PASS_LIGHT;
 }
 
+/* Normals as the pairs, which is what a profile rules, or as asked; NONE: not
+ * in that format. Two numbers of 0..1 whatever it is, so that stages do not
+ * tell. */
+static enum hl_format normal_format(const struct hl_ask *ask,
+                                    enum hl_format pair)
+{
+    enum hl_format f = ask->n.normal_format;
+    bool ruled = ask->caps->profile.two16[0].format != HL_FORMAT_NONE;
+    if (f == HL_FORMAT_NONE || f == pair)
+        return pair;
+    bool known = f == HL_FORMAT_RG8_UNORM || f == HL_FORMAT_RG16_FLOAT;
+    return known && !ruled && pair != HL_FORMAT_NONE &&
+           hl_format_usable(ask->caps, f, HL_USE_TARGET | HL_USE_SAMPLED, 1)
+           ? f : HL_FORMAT_NONE;
+}
+
 static enum hl_refusal choose_gbuffer(struct hl_plan *p,
                                       const struct hl_ask *ask)
 {
@@ -59,9 +75,10 @@ static enum hl_refusal choose_gbuffer(struct hl_plan *p,
     int use = HL_USE_TARGET | HL_USE_SAMPLED;
     uint32_t w = p->light_width, h = p->light_height;
     row = hl_plan_row(ask->caps, c->two16, HL_FORMAT_NONE, use, 1);
-    enum hl_format normal = row ? row->format
-                            : c->two16[0].format ? HL_FORMAT_NONE
-                            : hl_format_pick(ask->caps, two16, use, 1);
+    enum hl_format pair = row ? row->format
+                          : c->two16[0].format ? HL_FORMAT_NONE
+                          : hl_format_pick(ask->caps, two16, use, 1);
+    enum hl_format normal = normal_format(ask, pair);
     enum hl_format depth = hl_plan_light_depth(p, ask, use, &depth_row);
     if (normal == HL_FORMAT_NONE)
         return HL_REFUSED_NORMAL_FORMAT;
@@ -73,14 +90,15 @@ static enum hl_refusal choose_gbuffer(struct hl_plan *p,
     hl_plan_keep(p, t, ask->caps, row, true);
     t->error = hl_normal_error(t->sample_as ? t->sample_as : normal);
     t->read_by = 1u << HL_PASS_LIGHT;
-    hl_plan_why(p, HL_WHY_NORMAL_FORMAT, (float)normal, t->error, 0, 0);
-    t = hl_plan_add_target(p, HL_ROLE_DSF, normal, w, h, 1);
+    hl_plan_why(p, HL_WHY_NORMAL_FORMAT, (float)normal, t->error,
+                ask->n.normal_format ? 1 : 0, 0);
+    t = hl_plan_add_target(p, HL_ROLE_DSF, pair, w, h, 1);
     hl_plan_keep(p, t, ask->caps, row, true);
     if (!p->float_taps)
         t->sample_as = HL_FORMAT_R32_UINT;
     t->error = ask->n.far / hl_plan_pair_steps(p->two16) * 0.5f;
     t->read_by = 1u << HL_PASS_MATERIAL;
-    hl_plan_why(p, HL_WHY_DSF_FORMAT, (float)normal, t->error, ask->n.far, 0);
+    hl_plan_why(p, HL_WHY_DSF_FORMAT, (float)pair, t->error, ask->n.far, 0);
     if (p->float_taps)
         hl_plan_why(p, HL_WHY_FLOAT_TAPS, 0, 0, 0, 0);
     add_depth(p, ask, depth, depth_row);
@@ -144,17 +162,23 @@ static double pairs_cost(const struct hl_plan *p,
            (p->motion ? write : 0);
 }
 
-/* The same in bytes; the reader of motion is not this frame's. */
-static double pairs_moved(const struct hl_plan *p)
+/* Bytes an L texel of channels beside normal and DSF; the reader of motion is
+ * not this frame's. */
+static double channels_moved(const struct hl_plan *p)
 {
-    return (p->brdfs ? 2 * 4 : 0) + (p->motion ? 4 : 0);
+    const struct hl_plan_target *e = hl_plan_target(p, HL_ROLE_EXPONENT);
+    return (e ? 2 * hl_format_info(e->format)->bytes : 0) +
+           (p->motion ? 4 : 0);
 }
 
 /* Geometry twice; the G-buffer written, the DSF's taps read a pixel. */
 static double geometry_cost(const struct hl_plan *p, const struct hl_ask *ask)
 {
     const struct hl_cost_model *c = &ask->caps->cost;
-    double taps = p->dsf == HL_DSF_EXACT ? 1 : p->dsf == HL_DSF_OFF ? 4 : 8;
+    double taps = p->dsf == HL_DSF_EXACT ? 1 : 4;
+    double dsf = p->dsf == HL_DSF_EXACT || p->dsf == HL_DSF_OFF ? 0 : 4;
+    double fetch = hl_fetch_ns(ask->caps,
+                               hl_plan_target(p, HL_ROLE_LIGHT)->format);
     double light = (double)p->light_width * p->light_height;
     double frame = hl_plan_shaded_pixels(ask);
     return 2.0 * ask->n.n_objects * (double)c->draw_ns +
@@ -162,7 +186,7 @@ static double geometry_cost(const struct hl_plan *p, const struct hl_ask *ask)
            HL_OVERDRAW * light * (double)c->pixel_ns * 2 +
            light * pairs_cost(p, c) +
            HL_OVERDRAW * frame *
-           ((double)c->pixel_ns + taps * (double)c->fetch_ns);
+           ((double)c->pixel_ns + dsf * (double)c->fetch_ns + taps * fetch);
 }
 
 /* Bytes a frame pixel: every target written, and read where it is sampled. */
@@ -174,10 +198,12 @@ static double moved(const struct hl_plan *p, double resolved)
                    ->bytes;
     double color = hl_format_info(hl_plan_target(p, HL_ROLE_COLOR)->format)
                    ->bytes;
+    double normal = hl_format_info(hl_plan_target(p, HL_ROLE_NORMAL)->format)
+                    ->bytes;
     double taps = p->dsf == HL_DSF_EXACT ? 1 : 4;
     double dsf = p->dsf == HL_DSF_SLOPE || p->dsf == HL_DSF_CONSTANT ? 16 : 0;
     double copy = hl_plan_target(p, HL_ROLE_DEPTH_COPY) ? 2 * 4 : 0;
-    return ratio * (2 * 12 + pairs_moved(p) + copy + texel) +
+    return ratio * (2 * (normal + 8) + channels_moved(p) + copy + texel) +
            taps * texel + dsf + (color + 4) * p->samples + resolved / pixels;
 }
 
@@ -188,6 +214,42 @@ static bool kept_dark(enum hl_role r)
 {
     return r != HL_ROLE_NORMAL && r != HL_ROLE_EXPONENT &&
            r != HL_ROLE_LIGHT_DEPTH && r != HL_ROLE_DEPTH_COPY;
+}
+
+/* Reasons for what a dark plan no longer has. */
+static bool of_light(const struct hl_plan_reason *r)
+{
+    switch (r->why) {
+    case HL_WHY_LIGHT_SIZE_ASKED: case HL_WHY_LIGHT_SIZE_DEFAULT:
+    case HL_WHY_LIGHT_SIZE_EDRAM: case HL_WHY_NORMAL_FORMAT:
+    case HL_WHY_DSF_FORMAT: case HL_WHY_TWO16_FIXED32:
+    case HL_WHY_TWO16_SIGNED: case HL_WHY_TWO16_BYTES_ARGB:
+    case HL_WHY_TWO16_BYTES: case HL_WHY_ID_STEPS: case HL_WHY_MRT_FORMAT:
+    case HL_WHY_FLOAT_TAPS: case HL_WHY_PATH_ASKED:
+    case HL_WHY_PATH_CHEAPEST: case HL_WHY_TILE_DEPTH:
+    case HL_WHY_LIGHT_FORMAT_ASKED: case HL_WHY_LIGHT_FORMAT_ERROR:
+    case HL_WHY_LIGHT_FORMAT_PROFILE: case HL_WHY_LIGHT_FORMAT_DARK:
+    case HL_WHY_LIGHT_ALPHA: case HL_WHY_NO_BLEND: case HL_WHY_LIGHT_RANGE:
+    case HL_WHY_LIGHT_PEAK_CUT: case HL_WHY_LIGHT_PEAK_DEFAULT:
+    case HL_WHY_DEPTH_BARG: case HL_WHY_DEPTH_PLAIN:
+    case HL_WHY_DEPTH_IN_PLACE: case HL_WHY_DEPTH_READ_ONLY:
+    case HL_WHY_DEPTH_COPY:
+        return true;
+    case HL_WHY_STAND_IN:
+        return !kept_dark((enum hl_role)(int)r->arg[2]);
+    default:
+        return false;
+    }
+}
+
+static void drop_reasons(struct hl_plan *p)
+{
+    uint32_t n = 0;
+    for (uint32_t i = 0; i < p->n_reasons; i++)
+        if (!of_light(&p->reason[i]))
+            p->reason[n++] = p->reason[i];
+    memset(&p->reason[n], 0, (p->n_reasons - n) * sizeof *p->reason);
+    p->n_reasons = n;
 }
 
 /* A scene without lights pays for none (K 7.1: the base cost): no geometry
@@ -211,6 +273,7 @@ static void darken(struct hl_plan *p)
     p->specular = HL_SPECULAR_NONE;
     p->light_path = HL_LIGHT_PATH_RECTS;
     p->tile_depth = false;
+    drop_reasons(p);
     hl_plan_why(p, HL_WHY_NO_LIGHT_PASS, 0, 0, 0, 0);
 }
 
@@ -239,9 +302,10 @@ static enum hl_refusal plan_dark(struct hl_plan *p, const struct hl_ask *lit)
         hl_plan_decals(p, &ask, HL_FORMAT_NONE);
         r = hl_plan_translucency(p, &ask);
     }
-    hl_plan_light_path(p, &ask);
-    if (r == HL_REFUSED_NOTHING)
+    if (r == HL_REFUSED_NOTHING) {
+        hl_plan_light_path(p, &ask);
         r = hl_plan_light_format(p, &ask);
+    }
     if (r == HL_REFUSED_NOTHING)
         r = hl_plan_frame_targets(p, &ask, ask.n.blended || ask.n.decals);
     if (r == HL_REFUSED_NOTHING)

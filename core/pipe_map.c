@@ -96,12 +96,16 @@ double hl_plan_map_cost(const struct hl_plan *p, const struct hl_ask *ask)
     double maps = columns(ask) * rows(ask), lights = ask->n.n_shadow_lights;
     double share = ask->n.n_lights
                    ? (double)ask->per_pixel / ask->n.n_lights : 0.1;
+    double normal = hl_fetch_ns(ask->caps,
+                                hl_plan_target(p, HL_ROLE_NORMAL)->format);
+    double blend = hl_blend_ns(ask->caps,
+                               hl_plan_target(p, HL_ROLE_LIGHT)->format);
     double casters = (maps > 1 ? 0.66 : 0.33) *
                      ((double)ask->n.n_objects * (double)c->draw_ns +
                       (double)ask->n.n_triangles * (double)c->vertex_ns);
     return lights * (casters + (double)c->draw_ns +
                      0.25 * maps * texels * (double)c->pixel_ns +
                      share * pixels *
-                     (double)(c->pixel_ns + 18 * c->fetch_ns + c->blend_ns +
-                              c->light_ns));
+                     ((double)(c->pixel_ns + 17 * c->fetch_ns + c->light_ns) +
+                      normal + blend));
 }

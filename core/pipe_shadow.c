@@ -99,10 +99,12 @@ double hl_plan_shadow_cost(const struct hl_plan *p, const struct hl_ask *ask)
         return hl_plan_map_cost(p, ask);
     if (p->shadows != HL_SHADOWS_VOLUMES)
         return 0;
+    double blend = hl_blend_ns(ask->caps,
+                               hl_plan_target(p, HL_ROLE_LIGHT)->format);
     double casters = 0.33 * ((double)ask->n.n_objects * (double)c->draw_ns +
                              (double)ask->n.n_triangles *
                              (double)c->vertex_ns);
     return lights * (casters + 2 * (double)c->draw_ns +
                      pixels * (2 * (double)(c->pixel_ns + c->fetch_ns) +
-                               (double)(c->blend_ns + c->light_ns)));
+                               blend + (double)c->light_ns));
 }

@@ -4,8 +4,8 @@
 #include "core/pipe.h"
 #include "core/stipple.h"
 
-/* Texel fetches of a stippled pixel: four of light, four of the DSF. */
-enum { TAPS = 8 };
+/* Texel fetches of a stippled pixel, of light and of the DSF each. */
+enum { TAPS = 4 };
 
 static uint32_t side_of(enum hl_translucency t)
 {
@@ -21,13 +21,17 @@ static double forward_ns(const struct hl_ask *ask)
 /* Taps, and the geometry draw: its L texels (two numbers' worth of targets,
  * most of them discarded, but shaded up to there), and the draw itself, of an
  * object as large as if all together covered the frame once and a half. The
- * light pass costs the same: texels only change owners. */
+ * light pass costs the same: texels only change owners. What format light
+ * will have, where it is not asked for, is not known yet. */
 static double stippled_ns(const struct hl_plan *p, const struct hl_ask *ask)
 {
     const struct hl_cost_model *c = &ask->caps->cost;
     double pixels = (double)p->width * p->height;
     double texels = (double)p->light_width * p->light_height;
-    return TAPS * (double)c->fetch_ns +
+    double fetch = (double)c->fetch_ns;
+    double light = ask->n.light_format
+                   ? hl_fetch_ns(ask->caps, ask->n.light_format) : fetch;
+    return TAPS * (fetch + light) +
            2 * (double)c->pixel_ns * texels / pixels +
            (double)c->draw_ns * ask->n.n_objects / (1.5 * pixels);
 }

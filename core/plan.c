@@ -206,6 +206,16 @@ static bool good(float x, float low, float high)
     return x >= low && x <= high;
 }
 
+static bool good_budget(const struct hl_needs *n)
+{
+    const struct hl_probe *p = &n->probe;
+    return good(n->budget_codes, 0, 255) && good(n->budget_ms, 0, 1e30f) &&
+           good(p->full, 0, 255) && good(p->half, 0, 255) &&
+           good(p->eight, 0, 255) && good(p->eight_blends, 0, 1e9f) &&
+           good(p->three_quarters, 0, 255) && good(p->quarter, 0, 255) &&
+           good(p->forward, 0, 255);
+}
+
 static enum hl_refusal check(const struct hl_needs *n,
                              const struct hl_caps *caps)
 {
@@ -224,6 +234,7 @@ static enum hl_refusal check(const struct hl_needs *n,
     if ((n->batch && n->batch > HL_BATCH_MAX) ||
         (n->tile && (n->tile < 8 || n->tile > 256)) ||
         (unsigned)n->light_format >= HL_FORMAT_COUNT || n->lights > 7 ||
+        (unsigned)n->normal_format >= HL_FORMAT_COUNT ||
         (unsigned)n->light_path > HL_LIGHT_PATH_VOLUMES ||
         (unsigned)n->dsf > HL_DSF_CONSTANT_TAU ||
         (unsigned)n->specular > HL_NEED_EXPONENTS ||
@@ -244,6 +255,7 @@ static enum hl_refusal check(const struct hl_needs *n,
         !good(n->dsf_k, 0, 1e3f) || !good(n->dsf_c, 0, 1) ||
         !good(n->dsf_tau, 0, 1) || !good(n->peak, 0, 1e30f) ||
         !good(n->max_error, 0, 255) || !good(n->exponent, 0, 256) ||
+        !good_budget(n) || !hl_error_model_good(&caps->error) ||
         hl_profile_fault(&caps->profile))
         return HL_REFUSED_VALUE;
     return HL_REFUSED_NOTHING;
@@ -275,15 +287,18 @@ static const planner planners[HL_PIPELINE_COUNT] = {
     [HL_PIPELINE_INFERRED] = hl_plan_inferred,
 };
 
-static enum hl_refusal plan_one(struct hl_plan *out, enum hl_pipeline pipeline,
-                                const struct hl_ask *ask, bool automatic)
+enum hl_refusal hl_plan_one(struct hl_plan *out, enum hl_pipeline pipeline,
+                            const struct hl_ask *ask, bool automatic)
 {
     memset(out, 0, sizeof *out);
     out->pipeline = pipeline;
     hl_plan_why(out, automatic ? HL_WHY_PIPELINE_CHEAPEST
                                : HL_WHY_PIPELINE_ASKED,
                 (float)pipeline, 0, 0, 0);
-    return planners[pipeline](out, ask);
+    enum hl_refusal r = planners[pipeline](out, ask);
+    if (r == HL_REFUSED_NOTHING)
+        hl_plan_error(out, ask);
+    return r;
 }
 
 /* A light size that was asked for and does not fit refuses the whole: to
@@ -294,7 +309,7 @@ static enum hl_refusal plan_auto(struct hl_plan *out, const struct hl_ask *ask)
     struct hl_plan one;
     float best = -1, second = 0;
     for (int i = 1; i < HL_PIPELINE_COUNT; i++) {
-        enum hl_refusal r = plan_one(&one, (enum hl_pipeline)i, ask, true);
+        enum hl_refusal r = hl_plan_one(&one, (enum hl_pipeline)i, ask, true);
         if (r != HL_REFUSED_NOTHING) {
             /* The first one's reasons, should none be drawn. */
             if (why == HL_REFUSED_PIPELINE && best < 0)
@@ -351,8 +366,11 @@ enum hl_result hl_plan_make(struct hl_plan *out, enum hl_pipeline pipeline,
     ask.n = *needs;
     ask.caps = caps;
     fill(&ask);
-    *why = pipeline == HL_PIPELINE_AUTO ? plan_auto(out, &ask)
-                                        : plan_one(out, pipeline, &ask, false);
+    *why = pipeline == HL_PIPELINE_AUTO
+           ? plan_auto(out, &ask) : hl_plan_one(out, pipeline, &ask, false);
+    if (*why == HL_REFUSED_NOTHING && (ask.n.budget_codes > 0 ||
+                                       ask.n.budget_ms > 0))
+        *why = hl_plan_budget(out, pipeline, &ask);
     if (*why == HL_REFUSED_NOTHING)
         return HL_OK;
     only_reasons(out);

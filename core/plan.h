@@ -87,6 +87,9 @@ enum hl_reason {
     HL_WHY_INFINITE_FAR, HL_WHY_VOLUME_TEXELS, HL_WHY_FILL, HL_WHY_FETCH,
     HL_WHY_CENTROID, HL_WHY_MOTION, HL_WHY_BRDFS, HL_WHY_NO_LIGHT_PASS,
     HL_WHY_BUDGET_ERROR, HL_WHY_BUDGET_COST, HL_WHY_BUDGET_MISSED,
+    HL_WHY_LIGHT_FORMAT_DARK, HL_WHY_LIGHT_ALPHA,
+    HL_WHY_PIPELINE_BUDGET, HL_WHY_LIGHT_SIZE_BUDGET,
+    HL_WHY_LIGHT_FORMAT_BUDGET,
     HL_WHY_COUNT
 };
 
@@ -99,7 +102,9 @@ enum hl_reason {
  * MOTION, BRDFS format; BUDGET_ERROR budget, predicted error, predicted ms,
  * plans compared; BUDGET_COST budget, predicted ms, predicted error, plans
  * compared; BUDGET_MISSED (of a refusal) budget of error or 0, of cost or 0,
- * the least predicted error, the least predicted cost. */
+ * the least predicted error, the least predicted cost; LIGHT_FORMAT_DARK
+ * format not taken, codes of half its step, max_error, peak; LIGHT_ALPHA
+ * format, bits, step, peak. */
 
 /* Which need could not be met. */
 enum hl_refusal {
@@ -202,7 +207,9 @@ struct hl_plan {
     float light_error;             /* predicted relative error of the light  */
     float cost_ms;                 /* predicted by caps.cost                 */
     /* Predicted error of the picture by caps.error and needs.probe, RMS of
-     * 8-bit sRGB codes; forward pipelines: of their encodings alone. */
+     * 8-bit sRGB codes, at most 255; forward pipelines: the probe's, and of
+     * their encodings. The inferred pipeline's with the filter and features
+     * that the probe was drawn with: with others it is a guess. */
     float error_codes;
 };
 
@@ -214,6 +221,12 @@ struct hl_plan {
 enum hl_result hl_plan_make(struct hl_plan *out, enum hl_pipeline pipeline,
                             const struct hl_needs *needs,
                             const struct hl_caps *caps, enum hl_refusal *why);
+
+/* Nanoseconds by caps.cost of blending one texel of a format, and of fetching
+ * one: the format's own where it is known, else by its bytes as hl_cost_model
+ * says. HL_FORMAT_NONE or out of range: 0. */
+double hl_blend_ns(const struct hl_caps *, enum hl_format);
+double hl_fetch_ns(const struct hl_caps *, enum hl_format);
 
 /* Target of a role, NULL where the plan has none. */
 const struct hl_plan_target *hl_plan_target(const struct hl_plan *,

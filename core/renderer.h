@@ -73,6 +73,7 @@ struct hl_caster {
     uint32_t item;
     uint32_t material, material_bytes; /* offset in the arena; 0 bytes: not
                                         * there yet                          */
+    uint8_t faces;           /* of the light at hand, a bit a map: is on it  */
 };
 struct hl_maps {
     hl_prog light[4];        /* one light through its maps, by HL_MAP_*      */

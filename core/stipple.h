@@ -72,6 +72,8 @@ struct hl_stipple_object {
 /* The outline's rectangle, 1/16 texel larger: fills x0..y1 and outline. */
 void hl_stipple_bound(struct hl_stipple_object *,
                       const struct hl_stipple_outline *);
+/* Texels inside the outline. */
+double hl_stipple_area(const struct hl_stipple_outline *);
 
 /* ---- assigning ------------------------------------------------------- */
 

@@ -29,7 +29,7 @@ bool hl_stipple_outline_good(const struct hl_stipple_outline *o)
 /* ---- two outlines ---------------------------------------------------- */
 
 /* Twice the area: positive when corners run from x to y. */
-static double area(const struct hl_stipple_outline *o)
+static double turned_area(const struct hl_stipple_outline *o)
 {
     double sum = 0;
     for (uint32_t i = 0, j = o->n_corners - 1; i < o->n_corners; j = i++)
@@ -38,12 +38,18 @@ static double area(const struct hl_stipple_outline *o)
     return sum;
 }
 
+double hl_stipple_area(const struct hl_stipple_outline *o)
+{
+    double twice = turned_area(o);
+    return (twice < 0 ? -twice : twice) * 0.5;
+}
+
 /* True when all of b lies more than `gap` beyond an edge of a. Beyond is
  * measured along the edge's normal, times the edge's length. */
 static bool parts(const struct hl_stipple_outline *a,
                   const struct hl_stipple_outline *b, double gap)
 {
-    double turn = area(a) < 0 ? -1 : 1;
+    double turn = turned_area(a) < 0 ? -1 : 1;
     for (uint32_t i = 0, j = a->n_corners - 1; i < a->n_corners; j = i++) {
         double ex = turn * ((double)a->x[i] - (double)a->x[j]);
         double ey = turn * ((double)a->y[i] - (double)a->y[j]);

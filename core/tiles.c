@@ -158,3 +158,31 @@ float hl_tiles_peak(const struct hl_tile_grid *g, const uint32_t *first,
     }
     return peak;
 }
+
+void hl_peak_begin(struct hl_peak_grid *g, const struct hl_camera *cam,
+                   float aspect)
+{
+    memset(g, 0, sizeof *g);
+    g->span = hl_span_whole(HL_PEAK_X, HL_PEAK_Y, cam, aspect);
+}
+
+bool hl_peak_add(struct hl_peak_grid *g, const struct hl_lit_sphere *s,
+                 const struct hl_light *light)
+{
+    struct hl_rect b;
+    float peak = hl_light_peak(light);
+    if (!hl_sphere_rect(&b, s, &g->span))
+        return false;
+    for (int32_t y = b.y; y < b.y + b.height; y++)
+        for (int32_t x = b.x; x < b.x + b.width; x++)
+            g->sum[y * HL_PEAK_X + x] += peak;
+    return true;
+}
+
+float hl_peak_of(const struct hl_peak_grid *g)
+{
+    float peak = 0;
+    for (int i = 0; i < HL_PEAK_X * HL_PEAK_Y; i++)
+        peak = g->sum[i] > peak ? g->sum[i] : peak;
+    return peak;
+}

@@ -5,7 +5,8 @@
  * are column-major, m[column * 4 + row], column vectors. */
 #include "shaders/shared/lang.h"
 
-static inline hl_vec3 hl_load3(const float *p) { return hl_v3(p[0], p[1], p[2]); }
+static inline hl_vec3 hl_load3(const float *p)
+{ return hl_v3(p[0], p[1], p[2]); }
 static inline hl_vec3 hl_sub3(hl_vec3 a, hl_vec3 b)
 { return hl_v3(a.x - b.x, a.y - b.y, a.z - b.z); }
 static inline hl_vec3 hl_cross3(hl_vec3 a, hl_vec3 b)

@@ -228,6 +228,9 @@ vec4 hl_unpack_light(uvec4 w)
         return vec4(unpackUnorm2x16(w.x), unpackUnorm2x16(w.y));
     if (hl_spec_light_bits == uint(HL_BITS_FLOAT))
         return uintBitsToFloat(w);
+    if (hl_spec_light_bits == uint(HL_BITS_UNORM10))
+        return vec4(w.x & 1023u, w.x >> 10u & 1023u, w.x >> 20u & 1023u,
+                    w.x >> 30u) / vec4(1023.0, 1023.0, 1023.0, 3.0);
     return unpackUnorm4x8(w.x);
 }
 
@@ -235,10 +238,11 @@ vec4 hl_unpack_light(uvec4 w)
 vec4 hl_weigh_light(vec2 middle, vec4 k)
 {
     bool wide = hl_spec_light_bits == uint(HL_BITS_FLOAT);
+    bool one = hl_spec_light_bits == uint(HL_BITS_UNORM8) ||
+               hl_spec_light_bits == uint(HL_BITS_UNORM10);
     uvec4 zero = uvec4(0u);
     uvec4 r = hl_in_order(textureGather(hl_tex_light, middle, 0));
-    uvec4 g = hl_spec_light_bits == uint(HL_BITS_UNORM8)
-              ? zero : hl_in_order(textureGather(hl_tex_light, middle, 1));
+    uvec4 g = one ? zero : hl_in_order(textureGather(hl_tex_light, middle, 1));
     uvec4 b = wide ? hl_in_order(textureGather(hl_tex_light, middle, 2)) : zero;
     uvec4 a = wide ? hl_in_order(textureGather(hl_tex_light, middle, 3)) : zero;
     return hl_unpack_light(uvec4(r.x, g.x, b.x, a.x)) * k.x +

@@ -34,7 +34,7 @@ static void times(struct ct_scene *timed, uint32_t n, uint32_t rounds)
 {
     struct ct_times t[HL_PIPELINE_COUNT];
     ct_lights(timed, n);
-    if (rounds && timed->machine.device && ct_time(t, timed, rounds))
+    if (rounds && timed->stage.machine.device && ct_time(t, timed, rounds))
         for (int p = 1; p < HL_PIPELINE_COUNT; p++)
             printf(" %.1f (%.1f..%.1f) |", t[p].median, t[p].low, t[p].high);
     printf("\n");
@@ -54,7 +54,7 @@ static void row(struct ct_scene *s, struct ct_scene *timed,
     }
     if (!best || !has[0])
         return;
-    printf("| %s | %s | %u |", caps->backend, s->scene.name, n);
+    printf("| %s | %s | %u |", caps->backend, s->stage.scene.name, n);
     for (int p = 1; p < HL_PIPELINE_COUNT; p++)
         printf(" %.2f (%.2f) |", c[p].ns * 1e-6, c[p].predicted_ns * 1e-6);
     printf(" %s | %s | %.2f |", short_names[best],
@@ -64,13 +64,13 @@ static void row(struct ct_scene *s, struct ct_scene *timed,
         for (int p = 1; p < HL_PIPELINE_COUNT; p++)
             printf("  %s: draws %u tris %llu geo %llu light %llu blend %llu "
                    "mat %llu fwd %llu lights %llu path %d\n", short_names[p],
-                   c[p].draws, (unsigned long long)c[p].triangles,
-                   (unsigned long long)c[p].geometry,
-                   (unsigned long long)c[p].light,
-                   (unsigned long long)c[p].blended,
-                   (unsigned long long)c[p].material,
-                   (unsigned long long)c[p].forward,
-                   (unsigned long long)c[p].lights, (int)c[p].plan.light_path);
+                   c[p].of.draws, (unsigned long long)c[p].of.triangles,
+                   (unsigned long long)c[p].of.geometry,
+                   (unsigned long long)c[p].of.light,
+                   (unsigned long long)c[p].of.light_blends,
+                   (unsigned long long)c[p].of.material,
+                   (unsigned long long)c[p].of.forward,
+                   (unsigned long long)c[p].of.lights, (int)c[p].plan.light_path);
 }
 
 static void run_on(const char *scene, const char *backend, uint32_t w,
@@ -114,8 +114,8 @@ int main(int argc, char **argv)
         return 2;
     printf("Counted cost, ms (predicted), %u x %u\n\n"
            "| machine | scene | lights | forward | multipass | inferred | "
-           "cheapest | auto | auto / cheapest | ms forward | multipass | inferred "
-           "|\n|---|---|---|---|---|---|---|---|---|---|---|---|\n", w, h);
+           "cheapest | auto | auto / cheapest | ms forward | multipass | "
+           "inferred |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n", w, h);
     for (int i = 2; i < argc; i++)
         run(argv[i], w, h);
     for (size_t i = 0; argc < 3 && i < sizeof all / sizeof *all; i++)

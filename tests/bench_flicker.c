@@ -4,22 +4,21 @@
  *   bench_flicker [FRAMES [SCENE]]            (256, thin)
  * The picture of 320 x 180 pixels drifts by jitter alone: to and fro within a
  * pixel, 1/64 of a pixel a frame, y at 3/5 of x's pace, so that the way back
- * W is exactly known: what is at p was at p - (jitter now - jitter before).
- * e is the linear difference of a frame to the reference renderer's, whose
- * rays are moved alike. A frame's flicker is the mean over pixels and colours
- * of |e(p) - e before(W(p))|, e taken bilinearly; F is its mean over frames.
- * A constant error gives 0, one that comes and goes does not. */
+ * W is exactly known; the reference renderer's rays are moved alike. What F is:
+ * platforms/cli/flicker.h. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include "hal/backend.h"
 #include "platforms/cli/commands.h"
+#include "platforms/cli/flicker.h"
 #include "platforms/cli/readback.h"
 #include "platforms/cli/setup.h"
 #include "platforms/reference/reference.h"
 
-enum { W = 320, H = 180, N = W * H, FRAMES = 256, MOST_LIGHTS = 4096 };
+enum { W = 320, H = 180, N = W * H, FRAMES = 256, STEPS = 64,
+       MOST_LIGHTS = 4096 };
 
 /* A way to draw. `astray`: lights are moved with the picture, as if view rays
  * had the jitter left in; no engine wants that. */
@@ -56,9 +55,7 @@ struct view {
     struct hl_plan plan;
     struct hl_renderer *renderer;
     void *memory;
-    float *error, *before;       /* RGB a pixel                              */
-    double flicker, square;      /* sums                                     */
-    float worst, worst_error;
+    struct hlc_flicker flicker;
 };
 
 struct stage {
@@ -122,8 +119,7 @@ static void make_view(struct view *v, struct stage *s,
     v->memory = need(malloc(hl_renderer_bytes(&d)));
     must(hl_renderer_create(&v->renderer, s->machine.device, &d, v->memory) ==
          HL_OK, "no renderer");
-    v->error = need(calloc(N * 3, sizeof(float)));
-    v->before = need(calloc(N * 3, sizeof(float)));
+    must(hlc_flicker_begin(&v->flicker, W, H), "out of memory");
 }
 
 /* False: this machine is not here. */
@@ -150,26 +146,13 @@ static void free_stage(struct stage *s)
         struct view *v = &s->view[i];
         hl_renderer_destroy(&v->renderer);
         free(v->memory);
-        free(v->error);
-        free(v->before);
+        hlc_flicker_end(&v->flicker);
     }
     hlc_world_free(&s->world);
     hlc_machine_close(&s->machine);
 }
 
 /* ---- frames -------------------------------------------------------------- */
-
-static float to_and_fro(double x)
-{
-    double turn = x - 4 * floor(x / 4);      /* 0..4: 0, 1, 0, -1            */
-    return (float)(turn < 1 ? turn : turn < 3 ? 2 - turn : turn - 4);
-}
-
-static void jitter_of(float out[2], uint32_t t)
-{
-    out[0] = to_and_fro(t / 64.0);
-    out[1] = to_and_fro(t * 0.6 / 64.0);
-}
 
 static void draw_reference(float *rgb, const struct hlr_prepared *p,
                            const float jitter[2])
@@ -205,6 +188,7 @@ static void draw(struct view *v, struct stage *s, const struct way *way,
                  const float jitter[2], const float *want)
 {
     static struct hl_light lights[MOST_LIGHTS];
+    static float rgb[N * 3];
     struct hl_frame f = v->frame;
     struct hlc_texels t;
     memcpy(f.camera.jitter, jitter, sizeof f.camera.jitter);
@@ -220,62 +204,24 @@ static void draw(struct view *v, struct stage *s, const struct way *way,
     for (size_t i = 0; i < N; i++) {
         float texel[4];
         hlc_texel(texel, &t, i);
-        for (size_t c = 0; c < 3; c++) {
-            float e = texel[c] - want[i * 3 + c];
-            v->error[i * 3 + c] = e;
-            v->square += (double)e * (double)e;
-            v->worst_error = fmaxf(v->worst_error, fabsf(e));
-        }
+        memcpy(rgb + 3 * i, texel, 3 * sizeof *rgb);
     }
     hlc_texels_free(&t);
-}
-
-/* Moves of less than a pixel: the four around lie within the border. */
-static float error_at(const float *e, float x, float y, int c)
-{
-    int x0 = (int)floorf(x), y0 = (int)floorf(y);
-    float fx = x - (float)x0, fy = y - (float)y0;
-    const float *p = e + (y0 * W + x0) * 3 + c;
-    return (p[0] * (1 - fx) + p[3] * fx) * (1 - fy) +
-           (p[W * 3] * (1 - fx) + p[W * 3 + 3] * fx) * fy;
-}
-
-static void add_flicker(struct view *v, const float now[2],
-                        const float before[2])
-{
-    double sum = 0;
-    for (int y = 1; y < H - 2; y++)
-        for (int x = 1; x < W - 2; x++)
-            for (int c = 0; c < 3; c++) {
-                float was = error_at(v->before,
-                                     (float)x - (now[0] - before[0]),
-                                     (float)y - (now[1] - before[1]), c);
-                float d = fabsf(v->error[(y * W + x) * 3 + c] - was);
-                sum += (double)d;
-                v->worst = fmaxf(v->worst, d);
-            }
-    v->flicker += sum / ((W - 3) * (H - 3) * 3);
+    hlc_flicker_add(&v->flicker, rgb, want, jitter);
 }
 
 static void run(struct stage *stage, uint32_t n, uint32_t frames,
                 const struct hlr_prepared *prepared)
 {
     float *want = need(malloc(N * 3 * sizeof *want));
-    float now[2], before[2] = { 0, 0 };
+    float now[2];
     for (uint32_t t = 0; t < frames; t++) {
-        jitter_of(now, t);
+        hlc_flicker_jitter(now, t, STEPS);
         draw_reference(want, prepared, now);
         for (uint32_t k = 0; k < n * WAYS; k++) {
             struct stage *s = &stage[k / WAYS];
-            struct view *v = &s->view[k % WAYS];
-            float *e = v->before;
-            v->before = v->error;
-            v->error = e;
-            draw(v, s, &ways[k % WAYS], now, want);
-            if (t > 0)
-                add_flicker(v, now, before);
+            draw(&s->view[k % WAYS], s, &ways[k % WAYS], now, want);
         }
-        memcpy(before, now, sizeof before);
     }
     free(want);
 }
@@ -295,9 +241,8 @@ static void print(const struct stage *stage, uint32_t n, uint32_t frames,
         const struct way *w = &ways[k % WAYS];
         printf("| %s | %s | %s | %.4f | %.3f | %.3f | %.3f |\n",
                s->machine.backend->name, w->name, w->fill,
-               v->flicker / (frames - 1) * 1e3, (double)v->worst,
-               sqrt(v->square / ((double)N * 3 * frames)) * 1e3,
-               (double)v->worst_error);
+               hlc_flicker_f(&v->flicker) * 1e3, v->flicker.worst,
+               hlc_flicker_rms(&v->flicker) * 1e3, v->flicker.worst_error);
     }
 }
 

@@ -1,28 +1,19 @@
 /* SPDX-License-Identifier: Zlib */
 #ifndef COST_KIT_H
 #define COST_KIT_H
-/* Counted cost: what a frame really had (draws, triangles, fragments by pass,
- * blends, light evaluations), weighed with a machine's cost model. The frame
- * is drawn by packemu, which counts fragments, whatever machine it is
- * counted for; so the figure is the same on every run and has no time in it.
- */
-#include "platforms/cli/setup.h"
+/* Counted cost (platforms/chart/count.h) and times of the pipelines, for any
+ * number of a scene's lights. */
+#include "platforms/chart/count.h"
 
 struct ct_scene {
     struct hlc_options options;
-    struct hlc_machine machine;      /* packemu                              */
-    struct hlh_scene scene;
-    struct hlc_world world;
+    struct hlc_stage stage;          /* packemu, for counting                */
     uint32_t all_lights;             /* the scene's                          */
 };
 
 struct ct_cost {
     struct hl_plan plan;
-    uint32_t draws;
-    uint64_t triangles;
-    uint64_t geometry, light, blended, material, forward;  /* fragments;
-                                      * blended: of light and forward        */
-    uint64_t lights;                 /* evaluations, batches' fillers too    */
+    struct hlt_counts of;
     double ns;                       /* counted                              */
     double predicted_ns;             /* plan.cost_ms                         */
 };

@@ -112,6 +112,18 @@ void fz_profile(struct fz *f, struct hl_profile *out, bool keep)
         memset(out->name, 'x', sizeof out->name);
 }
 
+/* keep: what a calibration measures. */
+static void fz_error_model(struct fz *f, struct hl_error_model *m, bool keep)
+{
+    float *number[] = { &m->full, &m->half, &m->eight, &m->margin };
+    if (fz_bool(f))
+        return;
+    for (int i = 0; i < 9; i++)
+        m->eighths[i] = keep ? (float)fz_below(f, 64) / 16 : fz_number(f);
+    for (size_t i = 0; i < sizeof number / sizeof *number; i++)
+        *number[i] = keep ? (float)fz_below(f, 256) / 16 : fz_number(f);
+}
+
 void fz_caps(struct fz *f, struct hl_caps *c, bool keep)
 {
     bool whole = fz_bool(f);
@@ -138,4 +150,5 @@ void fz_caps(struct fz *f, struct hl_caps *c, bool keep)
     for (size_t i = 0; i < sizeof cost / sizeof *cost; i++)
         *cost[i] = (float)fz_below(f, 4096);
     fz_profile(f, &c->profile, keep);
+    fz_error_model(f, &c->error, keep);
 }

@@ -49,6 +49,8 @@ static void some_choices(struct fz *f, bool wild, struct hl_needs *n)
     n->dsf_tau = fz_bool(f) ? 0 : real(f, wild, 1);
     n->light_format = (enum hl_format)(fz_below(f, 4) ? 0u : choice(
                                        f, wild, HL_FORMAT_COUNT));
+    n->normal_format = (enum hl_format)(fz_below(f, 4) ? 0u : choice(
+                                        f, wild, HL_FORMAT_COUNT));
     n->half_pixel = (enum hl_half_pixel)(fz_below(f, 4) ? 0u : choice(
                                          f, wild, 4));
 }
@@ -69,6 +71,17 @@ static void some_features(struct fz *f, bool wild, struct hl_needs *n)
     n->fill = (enum hl_fill)choice(f, wild, 3);
     n->fetch = (enum hl_fetch)choice(f, wild, 3);
     n->no_centroid = fz_bool(f);
+}
+
+static void some_budget(struct fz *f, bool wild, struct hl_needs *n)
+{
+    float *number[] = { &n->probe.full, &n->probe.half, &n->probe.eight,
+                        &n->probe.eight_blends, &n->probe.three_quarters,
+                        &n->probe.quarter, &n->probe.forward };
+    for (size_t i = 0; i < sizeof number / sizeof *number; i++)
+        *number[i] = fz_bool(f) ? 0 : real(f, wild, 40);
+    n->budget_codes = fz_bool(f) ? 0 : real(f, wild, 30);
+    n->budget_ms = fz_bool(f) ? 0 : real(f, wild, 1000);
 }
 
 static struct hl_needs some_needs(struct fz *f, bool wild)
@@ -92,6 +105,8 @@ static struct hl_needs some_needs(struct fz *f, bool wild)
     some_choices(f, wild, &n);
     if (fz_bool(f))
         some_features(f, wild, &n);
+    if (fz_below(f, 4) == 0)
+        some_budget(f, wild, &n);
     return n;
 }
 
@@ -172,6 +187,13 @@ static void check_numbers(const struct hl_plan *p)
     FZ_CHECK(p->far > 0 && p->light_scale > 0 && p->light_out > 0);
     FZ_CHECK(p->id_steps > 0);
     FZ_CHECK(p->cost_ms >= 0 && p->bytes_per_pixel > 0);
+    FZ_CHECK(p->error_codes >= 0 && p->error_codes <= 255);
+}
+
+static void check_budget(const struct hl_plan *p, const struct hl_needs *n)
+{
+    FZ_CHECK(n->budget_codes <= 0 || p->error_codes <= n->budget_codes);
+    FZ_CHECK(n->budget_ms <= 0 || p->cost_ms <= n->budget_ms);
 }
 
 static void check_reasons(const struct hl_plan *p)
@@ -268,6 +290,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     if (r == HL_OK) {
         FZ_CHECK(want == HL_PIPELINE_AUTO || want == a.pipeline);
         check_plan(&a, &n, &caps);
+        check_budget(&a, &n);
     } else {
         FZ_CHECK(r == HL_ERR_INVALID || r == HL_ERR_UNSUPPORTED);
         FZ_CHECK(a.n_targets == 0 && a.n_passes == 0);

@@ -114,6 +114,7 @@ static void equal_pictures_have_no_error(void **state)
     near(m.max, 0, 0);
     near(m.p999, 0, 0);
     near(m.mae, 0, 0);
+    near(m.rms_codes, 0, 0);
     near(m.within_1_255, 1, 0);
     near(m.flip, 0, 0);
     near(m.flip_p99, 0, 0);
@@ -223,6 +224,36 @@ static void codes_are_rounded_before_they_are_compared(void **state)
     near(measured(&t, &r, NULL).within_1_255, 0.75, 0);
     hlh_picture_free(&r);
     hlh_picture_free(&t);
+}
+
+/* Pictures made of whole codes differ by whole codes, but for what 32-bit
+ * floats keep of the linear values: 2^-24 of them is 2^-24 code / 2.4 of a
+ * code, so at most 255 x 2^-24 / 2.4 = 6.4e-6 for each of the two. */
+static void rms_of_codes_is_that_of_the_integers(void **state)
+{
+    (void)state;
+    static int (*const codes[])(int, int, int) = { noisy_code, moved_code };
+    struct hlh_picture r = drawn(base_code);
+    for (int i = 0; i < 2; i++) {
+        struct hlh_picture t = drawn(codes[i]);
+        double squares = 0;
+        for (int y = 0; y < H; y++)
+            for (int x = 0; x < W; x++)
+                for (int c = 0; c < 3; c++) {
+                    int e = codes[i](x, y, c) - base_code(x, y, c);
+                    squares += e * e;
+                }
+        near(measured(&t, &r, NULL).rms_codes, sqrt(squares / (W * H * 3)),
+             1.3e-5);
+        hlh_picture_free(&t);
+    }
+    /* Clamped: 255 to 0 in one channel of three, nothing beyond. */
+    struct hlh_picture bright = flat(8, 9, 1, -3), dark = flat(8, 1, 0, 0);
+    near(hlc_rms_codes(&bright, &dark), 255 / sqrt(3), 1e-12 * 255);
+    near(hlc_rms_codes(&dark, &bright), 255 / sqrt(3), 1e-12 * 255);
+    hlh_picture_free(&bright);
+    hlh_picture_free(&dark);
+    hlh_picture_free(&r);
 }
 
 /* ---- edges -------------------------------------------------------------- */
@@ -447,6 +478,7 @@ int main(void)
         cmocka_unit_test(a_black_reference_has_peak_one),
         cmocka_unit_test(percentiles_are_ranks),
         cmocka_unit_test(codes_are_rounded_before_they_are_compared),
+        cmocka_unit_test(rms_of_codes_is_that_of_the_integers),
         cmocka_unit_test(an_edge_reaches_two_pixels),
         cmocka_unit_test(edge_error_is_of_the_masked_pixels),
         cmocka_unit_test(flip_of_flat_pictures_is_the_closed_form),

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Zlib */
 /* What AUTO takes, by what frames really cost: never more than a quarter
  * above the cheapest pipeline, with no light, few, and many. Counted on
- * packemu (tests/cost_kit.h), for its own costs and for lavapipe's. */
+ * packemu (platforms/chart/count.h), for its own costs and for lavapipe's. */
 #include <string.h>
 #include "platforms/cli/commands.h"
 #include "tests/check.h"
@@ -27,7 +27,7 @@ static void check_one(struct ct_scene *s, const struct hl_caps *caps,
         *worst = ratio > *worst ? ratio : *worst;
         if (ratio > MOST)
             fail_msg("%s, %u lights on %s: auto takes %d, %.2f times %d",
-                     s->scene.name, lights, caps->backend,
+                     s->stage.scene.name, lights, caps->backend,
                      (int)taken.plan.pipeline, ratio, p);
     }
 }
@@ -42,7 +42,7 @@ static void auto_is_near_the_cheapest(void **state)
     for (size_t k = 0; k < sizeof scenes / sizeof *scenes; k++) {
         struct ct_scene s;
         assert_true(ct_open(&s, scenes[k], "packemu", W, H));
-        caps[1] = *hl_device_caps(s.machine.device);
+        caps[1] = *hl_device_caps(s.stage.machine.device);
         for (int m = 0; m < 2; m++)
             for (size_t i = 0; i < sizeof some / sizeof *some; i++)
                 if (i == 0 || some[i - 1] < s.all_lights)
@@ -61,14 +61,14 @@ static void no_light_costs_nothing(void **state)
     (void)state;
     assert_true(ct_open(&s, "fig8", "packemu", W, H));
     ct_lights(&s, 0);
-    const struct hl_caps *caps = hl_device_caps(s.machine.device);
+    const struct hl_caps *caps = hl_device_caps(s.stage.machine.device);
     assert_true(ct_count(&forward, &s, HL_PIPELINE_FORWARD_MULTIPASS, caps));
     assert_true(ct_count(&inferred, &s, HL_PIPELINE_INFERRED, caps));
-    assert_int_equal(inferred.draws, forward.draws);
-    assert_int_equal(inferred.triangles, forward.triangles);
-    assert_int_equal(inferred.material, forward.forward);
-    assert_int_equal(inferred.geometry, 0);
-    assert_int_equal(inferred.light, 0);
+    assert_int_equal(inferred.of.draws, forward.of.draws);
+    assert_int_equal(inferred.of.triangles, forward.of.triangles);
+    assert_int_equal(inferred.of.material, forward.of.forward);
+    assert_int_equal(inferred.of.geometry, 0);
+    assert_int_equal(inferred.of.light, 0);
     assert_true(inferred.ns == forward.ns);
     ct_close(&s);
 }
@@ -80,13 +80,13 @@ static void counting_repeats(void **state)
     struct ct_cost a, b;
     (void)state;
     assert_true(ct_open(&s, "many", "packemu", W, H));
-    const struct hl_caps *caps = hl_device_caps(s.machine.device);
+    const struct hl_caps *caps = hl_device_caps(s.stage.machine.device);
     assert_true(ct_count(&a, &s, HL_PIPELINE_INFERRED, caps));
     assert_true(ct_count(&b, &s, HL_PIPELINE_INFERRED, caps));
-    assert_true(a.ns == b.ns && a.lights == b.lights);
-    assert_int_equal(a.geometry, b.geometry);
-    assert_int_equal(a.material, b.material);
-    assert_true(a.geometry > 0 && a.light > 0 && a.material > 0);
+    assert_true(a.ns == b.ns && a.of.lights == b.of.lights);
+    assert_int_equal(a.of.geometry, b.of.geometry);
+    assert_int_equal(a.of.material, b.of.material);
+    assert_true(a.of.geometry > 0 && a.of.light > 0 && a.of.material > 0);
     ct_close(&s);
 }
 

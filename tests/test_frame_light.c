@@ -585,9 +585,9 @@ static double snapped(const float *picture, int k, int ch)
 
 /* Both in 32 bits, L-buffer as large as the frame: what is left is vertices'
  * snapping, which forward's positions see and those from the depth buffer do
- * not, and the normal's encoding, 0.0069 degrees up to 139 from the view axis (conformance
- * b1): 1.2e-4 of all light that reaches the surface, and of a lobe's slope,
- * sqrt(n / e) = 2.7 times that, with ks up to 0.14. */
+ * not, and the normal's encoding, 0.0069 degrees up to 139 from the view axis
+ * (conformance b1): 1.2e-4 of all light that reaches the surface, and of a
+ * lobe's slope, sqrt(n / e) = 2.7 times that, with ks up to 0.14. */
 static void inferred_is_forward_but_for_its_encodings(void **state)
 {
     struct fk_scene s;

@@ -165,7 +165,7 @@ static int inside(int v[3][2], int x, int y)
 static void count(int v[3][2], uint32_t samples, int x, int y,
                   int *must, int *may)
 {
-    uint32_t row = samples / 4;     /* of 2, 4, 8                              */
+    uint32_t row = samples / 4;     /* of 2, 4, 8                            */
     *must = *may = 0;
     for (uint32_t i = 0; i < samples; i++) {
         int in = inside(v, x * 256 + 128 + at[row][i][0] * 16,

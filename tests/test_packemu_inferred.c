@@ -17,7 +17,10 @@ struct lbuffer {
     uint16_t half[LH][LW][4];
     float full[LH][LW][4];
     uint8_t byte[LH][LW][4];
+    uint32_t ten[LH][LW];
 };
+
+enum { BITS = HL_BITS_UNORM10 + 1 };
 
 /* Few ids and depths, so that every number of taps is accepted somewhere. */
 static void fill_lbuffer(struct kk *k, struct lbuffer *l)
@@ -26,6 +29,8 @@ static void fill_lbuffer(struct kk *k, struct lbuffer *l)
         for (int x = 0; x < LW; x++) {
             l->dsf[y][x][0] = (uint16_t)(2000 + mk_below(&k->seed, 4) * 60);
             l->dsf[y][x][1] = (uint16_t)(ID + mk_below(&k->seed, 3));
+            l->ten[y][x] = mk_below(&k->seed, 65536) << 16 |
+                           mk_below(&k->seed, 65536);
             for (int c = 0; c < 4; c++) {
                 /* Some are infinite. */
                 l->half[y][x][c] = mk_below(&k->seed, 8)
@@ -53,6 +58,9 @@ static float light_of(const struct lbuffer *l, uint32_t bits, int y, int x,
         return fminf(ck_half(l->half[y][x][c]), HL_HALF_MAX);
     case HL_BITS_UNORM16: return (float)l->half[y][x][c] / 65535.0f;
     case HL_BITS_FLOAT: return l->full[y][x][c];
+    case HL_BITS_UNORM10:
+        return (float)(l->ten[y][x] >> 10 * c & (c < 3 ? 1023u : 3u)) /
+               (c < 3 ? 1023.0f : 3.0f);
     default: return (float)l->byte[y][x][c] / 255.0f;
     }
 }
@@ -62,12 +70,14 @@ static void bind_light(struct kk *k, const struct lbuffer *l, uint32_t bits,
 {
     static const enum hl_format formats[] = {
         HL_FORMAT_RGBA16_FLOAT, HL_FORMAT_RGBA16_UNORM,
-        HL_FORMAT_RGBA32_FLOAT, HL_FORMAT_RGBA8_UNORM };
+        HL_FORMAT_RGBA32_FLOAT, HL_FORMAT_RGBA8_UNORM,
+        HL_FORMAT_RGB10A2_UNORM };
     static const enum hl_format words[] = {
         HL_FORMAT_RG32_UINT, HL_FORMAT_RG32_UINT, HL_FORMAT_RGBA32_UINT,
-        HL_FORMAT_R32_UINT };
+        HL_FORMAT_R32_UINT, HL_FORMAT_R32_UINT };
     const void *data = bits == HL_BITS_FLOAT ? (const void *)l->full
                        : bits == HL_BITS_UNORM8 ? (const void *)l->byte
+                       : bits == HL_BITS_UNORM10 ? (const void *)l->ten
                        : (const void *)l->half;
     k->program.spec[HL_SPEC_LIGHT_BITS].u = bits;
     kk_texture(k, HL_TEX_LIGHT, formats[bits],
@@ -169,15 +179,15 @@ static void material_pass(void **state)
     (void)state;
     kk_open(&k);
     fill_lbuffer(&k, &l);
-    for (uint32_t i = 0; i < 4 * 4 * 2; i++) {
-        bool taps = i >= 16;
-        bind_light(&k, &l, i % 4, taps);
-        k.program.spec[HL_SPEC_DSF].u = i / 4 % 4;
+    for (uint32_t i = 0; i < BITS * 4 * 2; i++) {
+        bool taps = i >= BITS * 4;
+        bind_light(&k, &l, i % BITS, taps);
+        k.program.spec[HL_SPEC_DSF].u = i / BITS % 4;
         for (uint32_t n = 1; n <= HL_PE_BATCH; n = n * 3 + 1) {
             inferred_fragments(&k, n);
             kk_shade(&k, taps ? HL_SHADER_MATERIAL_PLAIN_TAPS_FRAG
                               : HL_SHADER_MATERIAL_PLAIN_FRAG);
-            check_material(&k, &l, i % 4);
+            check_material(&k, &l, i % BITS);
         }
     }
     kk_close(&k);

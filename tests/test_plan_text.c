@@ -64,7 +64,7 @@ static void everything_has_a_name(void **state)
         check_name(hlc_compare_name((enum hl_compare)i));
     for (int i = 0; i <= HL_PER_SHADOW_LIGHT; i++)
         check_name(hlc_repeat_name((enum hl_repeat)i));
-    for (uint32_t i = 0; i <= HL_DSF_EXACT; i++)
+    for (uint32_t i = 0; i <= HL_DSF_DARK; i++)
         check_name(hlc_dsf_name(i));
     for (uint32_t i = 0; i <= HL_SPECULAR_CHANNEL; i++)
         check_name(hlc_specular_name(i));
@@ -165,6 +165,12 @@ static void arguments_are_shown_as_what_they_are(void **state)
           "where none is rejected 4" },
         { HL_WHY_LIGHT_SIZE_ASKED, { 1600, 900, 12800, 7200 },
           "a light buffer of 1600 x 900 under 12800 x 7200 was asked for" },
+        { HL_WHY_NORMAL_FORMAT, { HL_FORMAT_RG8_UNORM, 0.9f, 1, 0 },
+          "RG8_UNORM was asked for normals: two components, at most 0.9 "
+          "degrees off where they face the viewer" },
+        { HL_WHY_LIGHT_FORMAT_DARK, { HL_FORMAT_RGBA16_UNORM, 2.4f, 1, 97 },
+          "half a step of RGBA16_UNORM, where 1 stands for 97, would be 2.4 "
+          "codes of 255 in the dark, past 1: it is not taken" },
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         struct hl_plan p = with(rows[i].why);
@@ -173,6 +179,27 @@ static void arguments_are_shown_as_what_they_are(void **state)
         hlc_reason_text(&p, 0, text, sizeof text);
         assert_string_equal(text, rows[i].want);
     }
+}
+
+/* Forward shading has no one exponent; with BRDFs its channel is there. */
+static void an_exponent_says_where_it_is(void **state)
+{
+    (void)state;
+    struct hl_plan p = with(HL_WHY_EXPONENT_CONSTANT);
+    char text[256];
+    p.reason[0].arg[0] = 32;
+    hlc_reason_text(&p, 0, text, sizeof text);
+    assert_string_equal(text, "the specular exponent is 32 for all materials "
+                              "and takes no channel");
+    p.n_targets = 1;
+    p.target[0].role = HL_ROLE_EXPONENT;
+    hlc_reason_text(&p, 0, text, sizeof text);
+    assert_string_equal(text, "the specular exponent is 32 for all materials: "
+                              "the light pass reads none");
+    p.pipeline = HL_PIPELINE_FORWARD;
+    hlc_reason_text(&p, 0, text, sizeof text);
+    assert_string_equal(text, "each material's own specular exponent is shaded "
+                              "with");
 }
 
 /* ---- pages -------------------------------------------------------------- */
@@ -263,6 +290,7 @@ int main(void)
         cmocka_unit_test(every_reason_is_a_sentence_that_fits),
         cmocka_unit_test(a_sentence_is_cut_to_its_room),
         cmocka_unit_test(arguments_are_shown_as_what_they_are),
+        cmocka_unit_test(an_exponent_says_where_it_is),
         cmocka_unit_test(a_page_shows_targets_passes_and_reasons),
         cmocka_unit_test(forward_pages_have_no_light_buffer),
         cmocka_unit_test(json_holds_the_whole_plan),

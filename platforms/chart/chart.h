@@ -56,11 +56,18 @@ struct hlt_row {
 struct hlt_table {
     struct hlt_row *rows;        /* malloc'd                                 */
     uint32_t n;
-    uint32_t width, height;      /* of all pictures                          */
+    uint32_t width, height;      /* of all pictures; 0: there is no file     */
+    char settings[64];           /* what else rows depend on: "9 rounds"; ""
+                                  * where that is nothing                    */
+    bool unfinished;             /* of a sweep that was interrupted          */
+    uint32_t refused;            /* by hlt_sweep: ways without a plan; not in
+                                  * the file                                 */
 };
 
-/* ways.c: for a machine of `profile`; malloc'd, NULL when memory is out. */
-struct hlt_way *hlt_ways(uint32_t *n, const char *profile, bool fast);
+/* ways.c: for such a machine; the first is the baseline, and no two ask for
+ * the same. What the planner refuses is among them. malloc'd, NULL when memory
+ * is out. */
+struct hlt_way *hlt_ways(uint32_t *n, const struct hl_caps *caps, bool fast);
 
 /* table.c */
 void hlt_table_free(struct hlt_table *);
@@ -92,10 +99,14 @@ struct hlt_point {
 /* Rows of a scene and machine that have both columns, budgets left out; sorted
  * by cost, marked. GOOD columns count as errors: psnr as 10^(-psnr / 20), RMS
  * by peak; ssim as 1 - ssim. malloc'd; scene NULL: geometric means of what all
- * scenes of the machine have. */
+ * scenes of the machine have. A cost that is not above 0 was not counted, and
+ * its row is left out; low and high of a mean are means of those. */
 struct hlt_point *hlt_points(uint32_t *n, const struct hlt_table *,
                              const char *scene, const char *machine,
                              enum hlt_column cost, enum hlt_column error);
+/* What an error of 0, which has no logarithm, counts as: 1e-8, below a bit of
+ * a 32-bit float at the peak; of relmse its square. */
+double hlt_error_floor(enum hlt_column error);
 /* Area that the front takes below and left of the corner, both axes as log2:
  * octaves of cost times octaves of error. Points beyond the corner count to
  * its edge. */

@@ -86,6 +86,7 @@ static cJSON *to_json(const struct hlc_metrics *m, const struct pair *p,
         hlc_json_uint(j, "edge_pixels", m->edge_pixels);
     else
         cJSON_AddNullToObject(j, "edge_pixels");
+    hlc_json_real(j, "rms_codes", m->rms_codes, 9);
     hlc_json_real(j, "within_1_255", m->within_1_255, 9);
     hlc_json_real(j, "flip", m->flip, 9);
     hlc_json_real(j, "flip_p99", m->flip_p99, 9);

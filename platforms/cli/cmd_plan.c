@@ -6,12 +6,10 @@
 #include "platforms/cli/commands.h"
 #include "platforms/cli/json.h"
 #include "platforms/cli/plan_text.h"
-#include "platforms/cli/setup.h"
+#include "platforms/cli/probe.h"
 
 struct planned {
-    struct hlh_scene scene;
-    struct hlc_machine machine;
-    struct hlc_world world;
+    struct hlc_stage stage;
     struct hl_frame frame;
     struct hl_needs needs;
     struct hl_plan plan;
@@ -20,22 +18,20 @@ struct planned {
 static int open_all(struct planned *p, const struct hlc_options *o)
 {
     struct hlh_error error;
-    if (!hlc_scene_open(&p->scene, o, &error))
+    struct hlh_scene scene;
+    if (!hlc_scene_open(&scene, o, &error))
         return hlc_fail(HLC_BAD, "%s", error.text);
-    int code = hlc_machine_open(&p->machine, o);
+    struct hl_probe probe = { 0 };
+    char line[HLC_PLAN_LINE] = "the device was lost while the scene was probed";
+    int code = hlc_stage_open(&p->stage, &scene, o);
+    if (code != HLC_DONE)
+        return code;
+    if (hlc_probe_wanted(o))
+        code = hlc_probe_measure(&probe, &p->stage, o);
     if (code == HLC_DONE)
-        code = hlc_world_open(&p->world, &p->machine, &p->scene, o);
-    if (code == HLC_DONE)
-        code = hlc_plan_open(&p->frame, &p->needs, &p->plan, &p->world,
-                             &p->machine.caps, o);
-    return code;
-}
-
-static void close_all(struct planned *p)
-{
-    hlc_world_free(&p->world);
-    hlc_machine_close(&p->machine);
-    hlh_scene_free(&p->scene);
+        code = hlc_plan_try(&p->frame, &p->needs, &p->plan, &p->stage.world,
+                            &p->stage.machine.caps, o, &probe, line);
+    return code == HLC_DONE ? code : hlc_fail(code, "%s", line);
 }
 
 /* ---- telling ------------------------------------------------------------ */
@@ -44,6 +40,29 @@ static const char *specular_need(enum hl_specular_need s)
 {
     return s == HL_NEED_NO_SPECULAR ? "none"
            : s == HL_NEED_ONE_EXPONENT ? "one_exponent" : "exponents";
+}
+
+/* null: no such bound, or not known. */
+static void bound(cJSON *j, const char *key, float x)
+{
+    if (x > 0)
+        hlc_json_real(j, key, (double)x, 6);
+    else
+        cJSON_AddNullToObject(j, key);
+}
+
+static void add_budget(cJSON *j, const struct hl_needs *n)
+{
+    bound(j, "budget_codes", n->budget_codes);
+    bound(j, "budget_ms", n->budget_ms);
+    cJSON *p = cJSON_AddObjectToObject(j, "probe");
+    bound(p, "full", n->probe.full);
+    bound(p, "three_quarters", n->probe.three_quarters);
+    bound(p, "half", n->probe.half);
+    bound(p, "quarter", n->probe.quarter);
+    bound(p, "forward", n->probe.forward);
+    bound(p, "eight", n->probe.eight);
+    bound(p, "eight_blends", n->probe.eight_blends);
 }
 
 static void add_needs(cJSON *tree, const struct hl_needs *n)
@@ -68,15 +87,17 @@ static void add_needs(cJSON *tree, const struct hl_needs *n)
     hlc_json_real(j, "peak", (double)n->peak, 6);
     hlc_json_real(j, "max_error",
                   n->max_error > 0 ? (double)n->max_error : 1.0, 6);
+    add_budget(j, n);
 }
 
 static cJSON *to_json(const struct planned *p)
 {
-    const struct hl_caps *caps = hl_device_caps(p->machine.device);
+    const struct hl_caps *caps = &p->stage.machine.caps;
     const struct hl_camera *camera = &p->frame.camera;
     uint32_t width = p->plan.light_width, height = p->plan.light_height;
     cJSON *j = hlc_json_begin("plan");
-    hlc_json_scene(j, &p->scene, (double)camera->near, (double)camera->far);
+    hlc_json_scene(j, &p->stage.scene, (double)camera->near,
+                   (double)camera->far);
     hlc_json_size(j, "size", p->plan.width, p->plan.height);
     hlc_json_size(j, "light_size", width ? width : p->plan.width,
                   height ? height : p->plan.height);
@@ -97,12 +118,13 @@ static cJSON *to_json(const struct planned *p)
 static void print_text(const struct planned *p)
 {
     const struct hl_needs *n = &p->needs;
+    const struct hl_caps *caps = &p->stage.machine.caps;
     printf("scene %s: %u objects, %u triangles, %u lights; a pixel sees %.3g "
-           "lights, an object %.3g\n", p->scene.name, (unsigned)n->n_objects,
-           (unsigned)n->n_triangles, (unsigned)n->n_lights,
-           (double)n->lights_per_pixel, (double)n->lights_per_object);
-    printf("device %s on %s\n", hl_device_caps(p->machine.device)->device,
-           hl_device_caps(p->machine.device)->backend);
+           "lights, an object %.3g\n", p->stage.scene.name,
+           (unsigned)n->n_objects, (unsigned)n->n_triangles,
+           (unsigned)n->n_lights, (double)n->lights_per_pixel,
+           (double)n->lights_per_object);
+    printf("device %s on %s\n", caps->device, caps->backend);
     hl_plan_text(stdout, &p->plan);
 }
 
@@ -132,7 +154,7 @@ int hlc_cmd_plan(const struct hlc_options *o)
     int code = open_all(p, o);
     if (code == HLC_DONE)
         code = tell(p, o);
-    close_all(p);
+    hlc_stage_close(&p->stage);
     free(p);
     return code;
 }

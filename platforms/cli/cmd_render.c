@@ -75,7 +75,8 @@ static void print_time(const struct hlc_render *r)
 
 static void print_where(const struct hlc_render *r)
 {
-    const struct hl_plan *p = &r->plan;
+    const struct hl_plan *p = &r->shot.plan;
+    const struct hl_caps *caps = &r->stage.machine.caps;
     if (r->o->reference) {
         printf("reference renderer, %u x %u\n", r->o->width, r->o->height);
         return;
@@ -86,16 +87,16 @@ static void print_where(const struct hlc_render *r)
         printf(", %u samples", p->samples);
     if (p->light_width)
         printf(", lit at %u x %u", p->light_width, p->light_height);
-    printf(", on %s (%s)\n", r->caps.device, r->caps.backend);
+    printf(", on %s (%s)\n", caps->device, caps->backend);
 }
 
 static void print_summary(const struct hlc_render *r)
 {
     const struct hlc_options *o = r->o;
     const char *path[] = { o->out, o->hdr, o->ids, o->json, o->dump };
-    printf("%s: %u objects, %llu triangles, %u lights\n", r->scene.name,
-           r->scene.n_objects, (unsigned long long)r->scene.n_triangles,
-           r->scene.n_lights);
+    const struct hlh_scene *s = &r->stage.scene;
+    printf("%s: %u objects, %llu triangles, %u lights\n", s->name,
+           s->n_objects, (unsigned long long)s->n_triangles, s->n_lights);
     print_where(r);
     print_time(r);
     if (r->non_finite)
@@ -132,7 +133,8 @@ int hlc_cmd_render(const struct hlc_options *o)
         return hlc_fail(HLC_BAD, "out of memory");
     r->o = o;
     int code = HLC_DONE;
-    if (!check_outputs(o, &error) || !hlc_scene_open(&r->scene, o, &error))
+    if (!check_outputs(o, &error) ||
+        !hlc_scene_open(&r->stage.scene, o, &error))
         code = hlc_fail(HLC_BAD, "%s", error.text);
     if (code == HLC_DONE) {
         code = draw_and_write(r, &files);
@@ -143,7 +145,6 @@ int hlc_cmd_render(const struct hlc_options *o)
         free(r->inside.lights);
         free(r->inside.rejects);
         free(r->inside.stipple);
-        hlh_scene_free(&r->scene);
     }
     free(r);
     return code;

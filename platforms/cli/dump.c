@@ -96,7 +96,7 @@ static void as_metres(const struct hlc_render *r, const float v[4],
 
 static uint32_t region_of(const struct hlc_render *r, const float v[4])
 {
-    return (uint32_t)(v[1] * r->plan.id_steps + 0.5f);
+    return (uint32_t)(v[1] * r->shot.plan.id_steps + 0.5f);
 }
 
 static void as_region(const struct hlc_render *r, const float v[4],
@@ -123,13 +123,13 @@ static void as_diffuse(const struct hlc_render *r, const float v[4],
                        float rgb[3])
 {
     for (int k = 0; k < 3; k++)
-        rgb[k] = v[k] * r->plan.light_scale;
+        rgb[k] = v[k] * r->shot.plan.light_scale;
 }
 
 static void as_specular(const struct hlc_render *r, const float v[4],
                         float rgb[3])
 {
-    rgb[0] = rgb[1] = rgb[2] = v[3] * r->plan.light_scale;
+    rgb[0] = rgb[1] = rgb[2] = v[3] * r->shot.plan.light_scale;
 }
 
 /* Saturates at a 64th of the screen. */
@@ -144,8 +144,8 @@ static void as_motion(const struct hlc_render *r, const float v[4],
 static void as_pixels(const struct hlc_render *r, const float v[4],
                       float rgb[3])
 {
-    rgb[0] = hl_motion_decode(v[0]) * 0.5f * (float)r->plan.width;
-    rgb[1] = hl_motion_decode(v[1]) * -0.5f * (float)r->plan.height;
+    rgb[0] = hl_motion_decode(v[0]) * 0.5f * (float)r->shot.plan.width;
+    rgb[1] = hl_motion_decode(v[1]) * -0.5f * (float)r->shot.plan.height;
     rgb[2] = 0;
 }
 
@@ -154,8 +154,8 @@ static void as_pixels(const struct hlc_render *r, const float v[4],
 static void as_z(const struct hlc_render *r, const float v[4], float rgb[3])
 {
     double n = r->near, f = r->far, d = (double)v[0];
-    double e = r->plan.reversed_depth ? d : 1 - d;
-    double z = !r->plan.infinite_far ? n * f / (e * (f - n) + n)
+    double e = r->shot.plan.reversed_depth ? d : 1 - d;
+    double z = !r->shot.plan.infinite_far ? n * f / (e * (f - n) + n)
                : e > n / f ? n / e : f;
     rgb[0] = rgb[1] = rgb[2] = (float)z;
 }
@@ -225,9 +225,9 @@ static void texel_of(const struct hlc_dump *d, const struct hlc_texels *t,
                      enum hl_role role, size_t i, float v[4])
 {
     hlc_texel(v, t, i);
-    if (!is_pair(&d->r->plan, role))
+    if (!is_pair(&d->r->shot.plan, role))
         return;
-    hlc_two16(v, d->r->plan.two16, v);
+    hlc_two16(v, d->r->shot.plan.two16, v);
     v[2] = 0;
 }
 
@@ -274,8 +274,8 @@ static bool dump_target(struct hlc_dump *d, const struct hl_plan_target *target)
     if (target->samples > 1 || target->role == HL_ROLE_COLOR ||
         target->role == HL_ROLE_RESOLVED)
         return true;
-    enum hl_result e = hlc_texels_read(&t, d->r->machine.device,
-                                       hl_renderer_target(d->r->renderer,
+    enum hl_result e = hlc_texels_read(&t, d->r->stage.machine.device,
+                                       hl_renderer_target(d->r->shot.renderer,
                                                           target->role));
     if (e != HL_OK)
         return hlh_fail(d->error, hlc_role_name(target->role), "%s",
@@ -311,8 +311,8 @@ bool hlc_dump(struct hlc_render *r, struct hlc_outputs *files,
                             &r->picture, r->o->exposure) &&
               hlc_dump_picture(&d, "frame.pfm", "the picture, linear",
                             &r->picture, 0);
-    for (uint32_t i = 0; ok && i < r->plan.n_targets; i++)
-        ok = dump_target(&d, &r->plan.target[i]);
+    for (uint32_t i = 0; ok && i < r->shot.plan.n_targets; i++)
+        ok = dump_target(&d, &r->shot.plan.target[i]);
     ok = ok && hlc_dump_inside(&d) && dump_index(&d);
     hlh_buffer_free(&d.index);
     return ok;

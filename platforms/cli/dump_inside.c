@@ -127,7 +127,7 @@ static void show_pattern(float rgb[3], uint32_t pattern)
 static bool dump_stipple(struct hlc_dump *d)
 {
     const struct hlc_inside *in = &d->r->inside;
-    uint32_t w = d->r->plan.light_width, h = d->r->plan.light_height;
+    uint32_t w = d->r->shot.plan.light_width, h = d->r->shot.plan.light_height;
     size_t n = (size_t)w * h;
     struct hlh_picture p = { w, h, malloc(n * 3 * sizeof(float)), true };
     if (!p.rgb)
@@ -159,7 +159,7 @@ bool hlc_dump_shadow_map(struct hlc_dump *d, const struct hlc_texels *t)
 {
     size_t n = (size_t)t->width * t->height;
     float low = 1, high = 0, v[4];
-    bool reversed = d->r->plan.reversed_depth;
+    bool reversed = d->r->shot.plan.reversed_depth;
     float empty = reversed ? 0.0f : 1.0f;
     struct hlh_picture p = { t->width, t->height,
                              malloc(n * 3 * sizeof(float)), true };

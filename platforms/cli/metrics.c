@@ -125,6 +125,28 @@ static double share_within_one(const float *test, const float *reference,
     return (double)good / (double)n_pixels;
 }
 
+static double code_unrounded(double v)
+{
+    v = v < 0 ? 0 : v > 1 ? 1 : v;
+    return 255.0 * (v <= 0.0031308 ? 12.92 * v
+                                   : 1.055 * pow(v, 1 / 2.4) - 0.055);
+}
+
+double hlc_rms_codes(const struct hlh_picture *a, const struct hlh_picture *b)
+{
+    size_t n = (size_t)a->width * a->height * 3;
+    double squares = 0;
+    for (size_t i = 0; i < n; i++) {
+        /* Most pixels of two plans are equal, and powers are slow. */
+        if (a->rgb[i] == b->rgb[i])
+            continue;
+        double e = code_unrounded((double)a->rgb[i]) -
+                   code_unrounded((double)b->rgb[i]);
+        squares += e * e;
+    }
+    return sqrt(squares / (double)n);
+}
+
 /* ---- errors ------------------------------------------------------------- */
 
 static double peak_of(const float *reference, size_t n)
@@ -217,6 +239,7 @@ bool hlc_metrics_measure(struct hlc_metrics *out,
     sum_errors(out, error, test->rgb, reference->rgb, n);
     bool ok = measure_edges(out, error, ids, test->width, test->height);
     out->p999 = (double)hlc_percentile(error, n, 0.999);
+    out->rms_codes = hlc_rms_codes(test, reference);
     out->within_1_255 = share_within_one(test->rgb, reference->rgb, n_pixels);
     /* The errors are done with: their room takes the map. */
     ok = ok && measure_flip(out, error, test, reference) &&

@@ -16,6 +16,7 @@ struct hlc_metrics {
     double edge_mae, rest_mae; /* within 2 px of an id edge, and not; NAN:
                               * no ids, or no such pixel                     */
     uint64_t edge_pixels;
+    double rms_codes;        /* hlc_rms_codes                                */
     double within_1_255;     /* share of pixels whose three 8-bit sRGB codes
                               * differ by 1 at most                          */
     double flip, flip_p99;   /* FLIP-LDR: mean, and 99 % as p999; 0..1       */
@@ -40,6 +41,10 @@ bool hlc_ssim(double *out, const struct hlh_picture *test,
  * of its four neighbours under another id, else 0. False: memory is out. */
 bool hlc_edge_mask(uint8_t *mask, const uint32_t *ids, uint32_t width,
                    uint32_t height);
+/* Root mean square, over pixels and channels, of the difference of 8-bit sRGB
+ * codes (IEC 61966-2-1 of values clamped to 0..1, times 255, not rounded):
+ * 0..255. Same sizes. */
+double hlc_rms_codes(const struct hlh_picture *a, const struct hlh_picture *b);
 /* The smallest of n > 0 values that `share` (0..1) of all do not exceed.
  * Reorders the values. */
 float hlc_percentile(float *values, size_t n, double share);

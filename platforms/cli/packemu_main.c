@@ -90,12 +90,12 @@ static void print_hash(const char *what, uint32_t w, uint32_t h,
  * profile's and not the host's. */
 static void print_targets(const struct hlc_render *r)
 {
-    for (uint32_t i = 0; i < r->plan.n_targets; i++) {
-        const struct hl_plan_target *t = &r->plan.target[i];
+    for (uint32_t i = 0; i < r->shot.plan.n_targets; i++) {
+        const struct hl_plan_target *t = &r->shot.plan.target[i];
         size_t bytes;
         const uint8_t *m = hl_packemu_memory(
-            r->machine.device, hl_renderer_target(r->renderer, t->role),
-            &bytes);
+            r->stage.machine.device,
+            hl_renderer_target(r->shot.renderer, t->role), &bytes);
         uint64_t hash = 0xcbf29ce484222325u;
         for (size_t k = 0; m && k < bytes; k++)
             hash = hash_byte(hash, m[k]);
@@ -264,17 +264,18 @@ static bool write_ppm(const struct hlh_picture *p, const char *path,
 
 static void print_drawn(const struct hlc_render *r, bool targets)
 {
-    printf("%s, %s, %s, %u light%s\n", r->scene.name,
+    const struct hl_plan *p = &r->shot.plan;
+    uint32_t lights = r->stage.scene.n_lights;
+    printf("%s, %s, %s, %u light%s\n", r->stage.scene.name,
            r->o->profile ? r->o->profile : "native",
-           hlc_pipeline_name(r->plan.pipeline), r->scene.n_lights,
-           r->scene.n_lights == 1 ? "" : "s");
+           hlc_pipeline_name(p->pipeline), lights, lights == 1 ? "" : "s");
     if (targets)
         print_targets(r);
     if (r->frame_ms.n)
         printf("%.1f ms a frame\n", r->frame_ms.median);
     print_hash("frame", r->picture.width, r->picture.height,
-               r->plan.n_targets ? hl_plan_target(&r->plan, HL_ROLE_COLOR)
-                                       ->format : HL_FORMAT_NONE,
+               p->n_targets ? hl_plan_target(p, HL_ROLE_COLOR)->format
+                            : HL_FORMAT_NONE,
                hash_picture(&r->picture));
 }
 
@@ -282,7 +283,7 @@ static int draw(struct hlc_render *r, const struct job *j)
 {
     struct hlh_error error;
     r->o = &j->o;
-    if (!hlh_scene_builtin(&r->scene, j->o.arg[0], &error))
+    if (!hlh_scene_builtin(&r->stage.scene, j->o.arg[0], &error))
         return hlc_fail(HLC_BAD, "%s", error.text);
     int code = hlc_render_device(r);
     if (code != HLC_DONE)
@@ -302,7 +303,6 @@ static int draw_scene(const struct job *j)
     int code = draw(r, j);
     hlc_render_device_free(r);
     hlh_picture_free(&r->picture);
-    hlh_scene_free(&r->scene);
     free(r);
     return code;
 }

@@ -180,6 +180,7 @@ static void add_settings(cJSON *j, const struct hl_plan *p)
     hlc_json_real(j, "moved_per_pixel", (double)p->moved_per_pixel, 6);
     hlc_json_real(j, "light_error", (double)p->light_error, 6);
     hlc_json_real(j, "cost_ms", (double)p->cost_ms, 6);
+    hlc_json_real(j, "error_codes", (double)p->error_codes, 6);
 }
 
 cJSON *hlc_plan_json(const struct hl_plan *p)

@@ -48,6 +48,11 @@ static const struct row rows[HL_WHY_COUNT] = {
     [HL_WHY_LIGHT_FORMAT_ERROR] = { "light_format_error", "K 2.2",
         "@0 keeps the light buffer's sum good enough: after #1 blends at "
         "most %2 off, 1 stands for $3" },
+    [HL_WHY_LIGHT_FORMAT_DARK] = { "light_format_dark", "",
+        "half a step of @0, where 1 stands for $3, would be $1 codes of 255 "
+        "in the dark, past $2: it is not taken" },
+    [HL_WHY_LIGHT_ALPHA] = { "light_alpha", "K 2.2",
+        "@0 has #1 bits of alpha: specular light comes in steps of $2" },
     [HL_WHY_COLOR_FORMAT] = { "color_format", "",
         "the frame is in @0: after #1 blends at most %2 off, where the need "
         "is $3 codes of 255" },
@@ -233,6 +238,14 @@ static const struct row rows[HL_WHY_COUNT] = {
     [HL_WHY_BUDGET_COST] = { "budget_cost", "",
         "of #3 plans the most accurate within $0 ms: predicted $1 ms, $2 "
         "codes" },
+    [HL_WHY_PIPELINE_BUDGET] = { "pipeline_budget", "",
+        "&0 keeps to the budget best" },
+    [HL_WHY_LIGHT_SIZE_BUDGET] = { "light_size_budget", "",
+        "the light buffer has #0 x #1 texels under #2 x #3 pixels: the size "
+        "that keeps to the budget best" },
+    [HL_WHY_LIGHT_FORMAT_BUDGET] = { "light_format_budget", "K 2.2",
+        "@0 keeps to the budget best: after #1 blends at most %2 off, 1 "
+        "stands for $3" },
     [HL_WHY_BUDGET_MISSED] = { "budget_missed", "",
         "the best plans come to $2 codes and $3 ms" },
 };
@@ -253,6 +266,16 @@ static const char *other_way(enum hl_reason why)
     default:
         return NULL;
     }
+}
+
+/* Takes a channel all the same, for BRDFs' sake. */
+static const char *exponent_text(const struct hl_plan *p, const char *none)
+{
+    return p->pipeline != HL_PIPELINE_INFERRED
+           ? "each material's own specular exponent is shaded with"
+           : hl_plan_target(p, HL_ROLE_EXPONENT)
+           ? "the specular exponent is $0 for all materials: the light pass "
+             "reads none" : none;
 }
 
 static const char *fill_text(enum hl_fill fill, const char *nearest)
@@ -331,10 +354,11 @@ void hlc_reason_text(const struct hl_plan *plan, uint32_t i, char *out,
         t = other_way(reason->why);
     if (reason->why == HL_WHY_FILL)
         t = fill_text((enum hl_fill)(int)reason->arg[0], t);
-    /* Forward shading reads each material; nothing is shared or stored. */
-    if (reason->why == HL_WHY_EXPONENT_CONSTANT &&
-        plan->pipeline != HL_PIPELINE_INFERRED)
-        t = "each material's own specular exponent is shaded with";
+    if (reason->why == HL_WHY_EXPONENT_CONSTANT)
+        t = exponent_text(plan, t);
+    if (reason->why == HL_WHY_NORMAL_FORMAT && reason->arg[2] > 0)
+        t = "@0 was asked for normals: two components, at most $1 degrees off "
+            "where they face the viewer";
     while (*t && used + 1 < bytes) {
         if (!is_mark(t)) {
             out[used++] = *t++;
@@ -354,7 +378,8 @@ const char *hlc_refusal_text(enum hl_refusal why)
         "the size is 0 or above the device's largest texture",
         "the light buffer's size is above the device's largest texture",
         "the device has no targets of that many samples",
-        "the device has no 2 x 16-bit target for normals and ids",
+        "normals cannot have that format, or the device has no 2 x 16-bit "
+        "target for them and ids",
         "the device has no floating point colour target as needed",
         "the light buffer cannot have that format, or its range is unknown",
         "the device has no depth target as needed",

@@ -4,8 +4,7 @@
 /* What the files of the render command share. Reading order: cmd_render.c,
  * render_device.c or render_reference.c, then dump.c and render_json.c. */
 #include "platforms/cli/outputs.h"
-#include "platforms/cli/setup.h"
-#include "platforms/host/image.h"
+#include "platforms/cli/shot.h"
 
 struct hlc_spread { double median, min, max; uint32_t n; };
 enum { HLC_RENDER_PASSES = 16 };
@@ -24,7 +23,7 @@ struct hlc_inside {
 
 struct hlc_render {
     const struct hlc_options *o;
-    struct hlh_scene scene;
+    struct hlc_stage stage;      /* the reference: its scene alone           */
     struct hlh_picture picture;
     struct hlc_inside inside;
     uint64_t non_finite;         /* pixels with a NaN or an infinity         */
@@ -37,16 +36,8 @@ struct hlc_render {
     struct { const char *name; double ms; } passes[HLC_RENDER_PASSES];
 
     /* Drawn by a device only. */
-    struct hlc_machine machine;
-    struct hl_caps caps;
-    struct hlc_world world;
-    struct hl_frame frame;
+    struct hlc_shot shot;
     struct hl_camera before;     /* with --motion: far / 100 to the left     */
-    struct hl_needs needs;
-    struct hl_plan plan;
-    struct hl_renderer *renderer;
-    void *memory;
-    struct hl_frame_stats stats;
     uint32_t validation_errors;
 
     /* By the reference only. */
@@ -56,7 +47,8 @@ struct hlc_render {
 
 /* Whether statistics or pictures of the inside are to be made. */
 bool hlc_render_inspects(const struct hlc_options *o);
-/* Draw into r->picture and r->inside. An exit code, after one line. */
+/* Draw r->stage.scene into r->picture and r->inside. An exit code, after one
+ * line. */
 int hlc_render_device(struct hlc_render *r);
 void hlc_render_device_free(struct hlc_render *r);
 int hlc_render_reference(struct hlc_render *r);

@@ -4,13 +4,13 @@
 #include <stdlib.h>
 #include <string.h>
 #include "platforms/cli/commands.h"
-#include "platforms/cli/readback.h"
+#include "platforms/cli/probe.h"
 #include "platforms/cli/render.h"
 
 static int refused(const struct hlc_render *r, const char *what,
                    enum hl_result result)
 {
-    const char *why = r->machine.complaint;
+    const char *why = r->stage.machine.complaint;
     bool device = result == HL_ERR_DEVICE_LOST || result == HL_ERR_NO_DEVICE ||
                   result == HL_ERR_UNSUPPORTED;
     return hlc_fail(device ? HLC_NO_DEVICE : HLC_BAD, "%s at %u x %u: %s",
@@ -20,65 +20,30 @@ static int refused(const struct hlc_render *r, const char *what,
 
 /* ---- making ------------------------------------------------------------ */
 
-/* Room for the largest object's volume, where the default has not that. */
-static uint32_t shadow_indices(const struct hlc_render *r)
-{
-    uint32_t most = 0;
-    for (uint32_t i = 0; r->world.shadows && i < r->scene.n_meshes; i++) {
-        const struct hl_shadow_mesh *m = &r->world.shadows[i].mesh;
-        uint32_t n = 6 * (m->n_faces + m->max_sides);
-        most = n > most ? n : most;
-    }
-    return most > 1u << 20 ? most : 0;
-}
-
-static int make_renderer(struct hlc_render *r)
-{
-    struct hl_renderer_desc d;
-    memset(&d, 0, sizeof d);
-    d.plan = &r->plan;
-    d.surfaces = r->world.surfaces;
-    d.n_surfaces = r->world.n_surfaces;
-    d.max_items = r->world.n_items ? r->world.n_items : 1;
-    d.max_lights = r->world.n_lights ? r->world.n_lights : 1;
-    d.readback = true;
-    d.shadow_indices = shadow_indices(r);
-    size_t bytes = hl_renderer_bytes(&d);
-    r->memory = bytes ? malloc(bytes) : NULL;
-    if (!r->memory)
-        return hlc_fail(HLC_BAD, "%s: %s", r->scene.name,
-                        bytes ? "out of memory for the renderer"
-                              : "too many objects or lights");
-    enum hl_result e = hl_renderer_create(&r->renderer, r->machine.device, &d,
-                                          r->memory);
-    return e == HL_OK ? HLC_DONE : refused(r, "renderer", e);
-}
-
 static int open_all(struct hlc_render *r)
 {
-    int code = hlc_machine_open(&r->machine, r->o);
+    char line[HLC_PLAN_LINE];
+    struct hlh_scene scene = r->stage.scene;
+    int code = hlc_stage_open(&r->stage, &scene, r->o);
     if (code != HLC_DONE)
         return code;
-    r->caps = r->machine.caps;
-    /* Before the upload, so that a size no machine takes costs no time. */
-    if (r->o->width > r->caps.max_tex_dim || r->o->height > r->caps.max_tex_dim)
-        return hlc_fail(HLC_BAD, "--size: %s draws at most %u x %u",
-                        r->caps.device, r->caps.max_tex_dim,
-                        r->caps.max_tex_dim);
-    code = hlc_world_open(&r->world, &r->machine, &r->scene, r->o);
-    if (code == HLC_DONE)
-        code = hlc_plan_open(&r->frame, &r->needs, &r->plan, &r->world,
-                             &r->caps, r->o);
+    struct hl_probe probe = { 0 };
+    if (hlc_probe_wanted(r->o))
+        code = hlc_probe_measure(&probe, &r->stage, r->o);
     if (code != HLC_DONE)
-        return code;
-    r->near = (double)r->frame.camera.near;
-    r->far = (double)r->frame.camera.far;
+        return refused(r, "probe", HL_ERR_DEVICE_LOST);
+    code = hlc_shot_open(&r->shot, &r->stage, r->o, NULL, &probe, line);
+    if (code != HLC_DONE)
+        return hlc_fail(code, "%s", line);
+    struct hl_frame *f = &r->shot.frame;
+    r->near = (double)f->camera.near;
+    r->far = (double)f->camera.far;
     if (r->o->motion) {
-        r->before = r->frame.camera;
+        r->before = f->camera;
         r->before.view[12] += r->before.far * 0.01f;
-        r->frame.before = &r->before;
+        f->before = &r->before;
     }
-    return make_renderer(r);
+    return HLC_DONE;
 }
 
 /* ---- frames ------------------------------------------------------------ */
@@ -123,17 +88,18 @@ static void note_passes(struct timing *t, struct hl_device *device)
 static enum hl_result draw(struct hlc_render *r, const struct hl_frame *frame,
                            struct timing *t, double *ms)
 {
+    struct hl_device *device = r->stage.machine.device;
     double start = hlc_now_ms();
-    enum hl_result e = hl_frame_draw(r->renderer, frame, &r->stats);
+    enum hl_result e = hl_frame_draw(r->shot.renderer, frame, &r->shot.stats);
     double recorded = hlc_now_ms();
-    if (t && e == HL_OK && r->plan.tile_depth)
-        note_passes(t, r->machine.device);   /* waited for within the frame  */
+    if (t && e == HL_OK && r->shot.plan.tile_depth)
+        note_passes(t, device);  /* waited for within the frame              */
     double resumed = hlc_now_ms();
     if (e == HL_OK)
-        e = hl_submit(r->machine.device, true);
+        e = hl_submit(device, true);
     *ms = hlc_now_ms() - start - (resumed - recorded);
     if (t && e == HL_OK) {
-        note_passes(t, r->machine.device);
+        note_passes(t, device);
         t->frame[t->n] = *ms;
         t->record[t->n++] = recorded - start;
     }
@@ -157,7 +123,7 @@ static enum hl_result draw_moved(struct hlc_render *r, struct timing *t)
     uint32_t n = t->frames ? r->o->warmup + t->frames : 0;
     double ms = 0;
     for (uint32_t i = 0; i < n && e == HL_OK; i++) {
-        struct hl_frame frame = r->frame;
+        struct hl_frame frame = r->shot.frame;
         move_camera(&frame.camera, i);
         e = draw(r, &frame, i < r->o->warmup ? NULL : t, &ms);
         r->first_ms = i == 0 ? ms : r->first_ms;
@@ -191,7 +157,7 @@ static int draw_all(struct hlc_render *r)
     if (e == HL_OK)
         sum_up(r, &t);
     if (e == HL_OK)
-        e = draw(r, &r->frame, NULL, &ms);
+        e = draw(r, &r->shot.frame, NULL, &ms);
     if (t.n == 0)
         r->first_ms = ms;
     free(t.frame);
@@ -205,12 +171,12 @@ static int draw_all(struct hlc_render *r)
 
 static uint32_t part_width(const struct hlc_render *r)
 {
-    return r->o->part_width ? r->o->part_width : r->plan.width;
+    return r->o->part_width ? r->o->part_width : r->shot.plan.width;
 }
 
 static uint32_t part_height(const struct hlc_render *r)
 {
-    return r->o->part_height ? r->o->part_height : r->plan.height;
+    return r->o->part_height ? r->o->part_height : r->shot.plan.height;
 }
 
 /* A picture of the frame's size down to the part that was drawn, in place:
@@ -220,44 +186,22 @@ static void crop(const struct hlc_render *r, void *data, size_t texel)
     uint32_t w = part_width(r), h = part_height(r);
     for (size_t y = 1; data && y < h; y++)
         memmove((char *)data + y * w * texel,
-                (char *)data + y * r->plan.width * texel, w * texel);
+                (char *)data + y * r->shot.plan.width * texel, w * texel);
 }
 
 static int read_picture(struct hlc_render *r)
 {
-    struct hlc_texels t;
-    enum hl_result e = hlc_texels_read(&t, r->machine.device,
-                                       hl_renderer_output(r->renderer));
-    if (e != HL_OK)
-        return refused(r, "picture", e);
-    uint32_t w = part_width(r), h = part_height(r);
-    r->picture = (struct hlh_picture){
-        w, h, malloc((size_t)w * h * 3 * sizeof(float)), true };
-    for (size_t i = 0; i < (size_t)w * h && r->picture.rgb; i++) {
-        float texel[4];
-        hlc_texel(texel, &t, i / w * t.width + i % w);
-        memcpy(r->picture.rgb + 3 * i, texel, 3 * sizeof(float));
-    }
-    hlc_texels_free(&t);
-    return r->picture.rgb ? HLC_DONE : refused(r, "picture", HL_ERR_MEMORY);
+    enum hl_result e = hlc_shot_read(&r->shot, &r->picture);
+    return e == HL_OK ? HLC_DONE : refused(r, "picture", e);
 }
 
+/* *out: any pointer to texels. */
 static enum hl_result inspect(struct hlc_render *r, enum hl_inspect what,
-                              void *out, size_t texel)
+                              void *out)
 {
     uint32_t w, h;
     void *data;
-    hl_inspect_size(r->renderer, what, &w, &h);
-    size_t bytes = (size_t)w * h * texel;
-    data = malloc(bytes);
-    if (!data)
-        return HL_ERR_MEMORY;
-    enum hl_result e = hl_frame_inspect(r->renderer, &r->frame, what, data,
-                                        bytes);
-    if (e != HL_OK) {
-        free(data);
-        data = NULL;
-    }
+    enum hl_result e = hlc_shot_inspect(&r->shot, what, &data, &w, &h);
     memcpy(out, &data, sizeof data);
     return e;
 }
@@ -265,11 +209,12 @@ static enum hl_result inspect(struct hlc_render *r, enum hl_inspect what,
 /* From items to the scene's objects. */
 static void name_objects(struct hlc_render *r)
 {
+    const struct hlc_world *w = &r->stage.world;
     size_t n = (size_t)part_width(r) * part_height(r);
     for (size_t i = 0; i < n; i++) {
         uint32_t id = r->inside.ids[i], item = id >> 16;
-        if (item > 0 && item <= r->world.n_items)
-            r->inside.ids[i] = (r->world.item_object[item - 1] + 1) << 16 |
+        if (item > 0 && item <= w->n_items)
+            r->inside.ids[i] = (w->item_object[item - 1] + 1) << 16 |
                                (id & 65535u);
     }
 }
@@ -290,20 +235,20 @@ static int look_inside(struct hlc_render *r)
     struct hlc_inside *in = &r->inside;
     enum hl_result e = HL_OK;
     if (r->o->ids || r->o->dump)
-        e = inspect(r, HL_INSPECT_IDS, &in->ids, sizeof *in->ids);
+        e = inspect(r, HL_INSPECT_IDS, &in->ids);
     crop(r, in->ids, sizeof *in->ids);
     if (e == HL_OK && in->ids)
         name_objects(r);
     if (e == HL_OK && hlc_render_inspects(r->o)) {
-        e = inspect(r, HL_INSPECT_LIGHTS, &in->lights, sizeof *in->lights);
-        hl_inspect_size(r->renderer, HL_INSPECT_LIGHTS, &in->lights_width,
+        e = inspect(r, HL_INSPECT_LIGHTS, &in->lights);
+        hl_inspect_size(r->shot.renderer, HL_INSPECT_LIGHTS, &in->lights_width,
                         &in->lights_height);
     }
-    if (e == HL_OK && hlc_render_inspects(r->o) && filters(&r->plan))
-        e = inspect(r, HL_INSPECT_REJECTS, &in->rejects, 1);
+    if (e == HL_OK && hlc_render_inspects(r->o) && filters(&r->shot.plan))
+        e = inspect(r, HL_INSPECT_REJECTS, &in->rejects);
     crop(r, in->rejects, 1);
-    if (e == HL_OK && r->o->dump && r->plan.stipple)
-        e = inspect(r, HL_INSPECT_STIPPLE, &in->stipple, 1);
+    if (e == HL_OK && r->o->dump && r->shot.plan.stipple)
+        e = inspect(r, HL_INSPECT_STIPPLE, &in->stipple);
     size_t n = in->lights ? (size_t)in->lights_width * in->lights_height : 0;
     for (size_t i = 0; i < n; i++)
         r->light_evaluations += (uint64_t)in->lights[i];
@@ -321,7 +266,7 @@ int hlc_render_device(struct hlc_render *r)
         code = look_inside(r);
     if (code != HLC_DONE)
         return code;
-    r->validation_errors = hl_device_validation_errors(r->machine.device);
+    r->validation_errors = hl_device_validation_errors(r->stage.machine.device);
     if (r->o->validation && r->validation_errors)
         return hlc_fail(HLC_FAILED, "%u validation errors",
                         r->validation_errors);
@@ -330,11 +275,6 @@ int hlc_render_device(struct hlc_render *r)
 
 void hlc_render_device_free(struct hlc_render *r)
 {
-    if (r->machine.device)
-        hl_submit(r->machine.device, true);
-    hl_renderer_destroy(&r->renderer);
-    free(r->memory);
-    r->memory = NULL;
-    hlc_world_free(&r->world);
-    hlc_machine_close(&r->machine);
+    hlc_shot_close(&r->shot);
+    hlc_stage_close(&r->stage);
 }

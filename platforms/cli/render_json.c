@@ -19,14 +19,16 @@ static void text(cJSON *in, const char *key, const char *value)
 static void put_machine(cJSON *tree, const struct hlc_render *r)
 {
     bool reference = r->o->reference;
-    text(tree, "backend", reference ? "reference" : r->caps.backend);
-    text(tree, "device", reference ? "host" : r->caps.device);
-    text(tree, "driver", reference ? "" : r->caps.driver);
-    text(tree, "profile", reference ? "native" : r->plan.profile);
+    const struct hl_caps *caps = &r->stage.machine.caps;
+    const struct hl_plan *p = &r->shot.plan;
+    text(tree, "backend", reference ? "reference" : caps->backend);
+    text(tree, "device", reference ? "host" : caps->device);
+    text(tree, "driver", reference ? "" : caps->driver);
+    text(tree, "profile", reference ? "native" : p->profile);
     text(tree, "pipeline", reference ? "reference"
-                                     : hlc_pipeline_name(r->plan.pipeline));
+                                     : hlc_pipeline_name(p->pipeline));
     if (!reference) {
-        cJSON_AddItemToObject(tree, "plan", hlc_plan_json(&r->plan));
+        cJSON_AddItemToObject(tree, "plan", hlc_plan_json(p));
         return;
     }
     hlc_json_uint(tree, "threads", r->threads);
@@ -90,30 +92,31 @@ static void put_feature_counts(cJSON *c, const struct hl_frame_stats *s)
 static void put_counts(cJSON *tree, const struct hlc_render *r)
 {
     cJSON *c = object(tree, "counts");
+    const struct hl_frame_stats *s = &r->shot.stats;
     if (r->o->reference) {
         cJSON_AddNullToObject(c, "draws");
         cJSON_AddNullToObject(c, "blends");
         hlc_json_uint(c, "surfaces", r->surfaces);
     } else {
-        hlc_json_uint(c, "draws", r->stats.draws);
-        hlc_json_uint(c, "blends", r->stats.blends);
-        hlc_json_uint(c, "items", r->stats.items);
-        hlc_json_uint(c, "items_culled", r->stats.items_culled);
-        hlc_json_uint(c, "lights", r->stats.lights);
-        hlc_json_uint(c, "lights_culled", r->stats.lights_culled);
-        hlc_json_uint(c, "light_refs", r->stats.light_refs);
+        hlc_json_uint(c, "draws", s->draws);
+        hlc_json_uint(c, "blends", s->blends);
+        hlc_json_uint(c, "items", s->items);
+        hlc_json_uint(c, "items_culled", s->items_culled);
+        hlc_json_uint(c, "lights", s->lights);
+        hlc_json_uint(c, "lights_culled", s->lights_culled);
+        hlc_json_uint(c, "light_refs", s->light_refs);
     }
     if (!r->o->reference)
-        put_feature_counts(c, &r->stats);
+        put_feature_counts(c, s);
     hlc_json_uint(c, "light_evaluations", r->light_evaluations);
     hlc_json_real(c, "lights_per_pixel_mean",
                   (double)r->light_evaluations / shaded_pixels(r), 9);
     /* Lights that a full list left out: none of today's pipelines drops one,
      * they refuse the frame instead. */
     hlc_json_uint(c, "overflow", 0);
-    if (r->plan.light_width) {
-        hlc_json_real(c, "light_peak", (double)r->stats.light_peak, 6);
-        cJSON_AddBoolToObject(c, "light_may_clip", r->stats.light_may_clip);
+    if (r->shot.plan.light_width) {
+        hlc_json_real(c, "light_peak", (double)s->light_peak, 6);
+        cJSON_AddBoolToObject(c, "light_may_clip", s->light_may_clip);
     }
     hlc_json_uint(tree, "non_finite_pixels", r->non_finite);
 }
@@ -142,16 +145,17 @@ static void put_bytes(cJSON *tree, const struct hlc_render *r)
         return;
     }
     cJSON *b = object(tree, "bytes");
-    for (uint32_t i = 0; i < r->plan.n_targets; i++)
-        targets += r->plan.target[i].bytes;
+    const struct hl_plan *p = &r->shot.plan;
+    for (uint32_t i = 0; i < p->n_targets; i++)
+        targets += p->target[i].bytes;
     hlc_json_uint(b, "targets", targets);
-    hlc_json_real(b, "moved_per_pixel", (double)r->plan.moved_per_pixel, 6);
-    hlc_json_uint(b, "scene", r->world.bytes);
+    hlc_json_real(b, "moved_per_pixel", (double)p->moved_per_pixel, 6);
+    hlc_json_uint(b, "scene", r->stage.world.bytes);
     cJSON *ids = object(tree, "ids");
-    text(ids, "scheme", r->world.ids.scheme);
-    hlc_json_uint(ids, "regions", r->world.ids.regions);
-    hlc_json_uint(ids, "highest", r->world.ids.highest);
-    hlc_json_uint(ids, "collisions", r->world.ids.collisions);
+    text(ids, "scheme", r->stage.world.ids.scheme);
+    hlc_json_uint(ids, "regions", r->stage.world.ids.regions);
+    hlc_json_uint(ids, "highest", r->stage.world.ids.highest);
+    hlc_json_uint(ids, "collisions", r->stage.world.ids.collisions);
     if (r->o->validation)
         hlc_json_uint(tree, "validation_errors", r->validation_errors);
     else
@@ -162,9 +166,9 @@ bool hlc_render_json(const struct hlc_render *r, struct hlh_error *error)
 {
     cJSON *tree = hlc_json_begin("render");
     bool device = !r->o->reference;
-    uint32_t lw = device ? r->plan.light_width : 0;
-    uint32_t lh = device ? r->plan.light_height : 0;
-    hlc_json_scene(tree, &r->scene, r->near, r->far);
+    uint32_t lw = device ? r->shot.plan.light_width : 0;
+    uint32_t lh = device ? r->shot.plan.light_height : 0;
+    hlc_json_scene(tree, &r->stage.scene, r->near, r->far);
     hlc_json_size(tree, "size", r->o->width, r->o->height);
     if (r->o->part_width)
         hlc_json_size(tree, "part", r->o->part_width, r->o->part_height);

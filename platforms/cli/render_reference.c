@@ -61,9 +61,9 @@ int hlc_render_reference(struct hlc_render *r)
                                             : NULL;
     if (!r->picture.rgb || ((r->o->ids || r->o->dump) && !r->inside.ids))
         return hlc_fail(HLC_BAD, "--size: out of memory");
-    struct hlr_prepared *prepared = hlr_prepare(&r->scene, &why);
+    struct hlr_prepared *prepared = hlr_prepare(&r->stage.scene, &why);
     if (!prepared)
-        return hlc_fail(HLC_BAD, "%s: %s", r->scene.name,
+        return hlc_fail(HLC_BAD, "%s: %s", r->stage.scene.name,
                         why ? why : "out of memory");
     bool ok = hlr_draw(r->picture.rgb, r->inside.ids, prepared, &options,
                        &stats);
@@ -71,7 +71,8 @@ int hlc_render_reference(struct hlc_render *r)
     hlr_prepared_free(prepared);
     if (!ok)
         return hlc_fail(HLC_BAD, "%s: the reference renderer refused the "
-                        "camera or size, or memory is out", r->scene.name);
+                        "camera or size, or memory is out",
+                        r->stage.scene.name);
     double ms = stats.draw_seconds * 1000;
     r->frame_ms = (struct hlc_spread){ ms, ms, ms, 1 };
     r->threads = stats.threads;

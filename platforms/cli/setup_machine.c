@@ -2,6 +2,7 @@
 /* A device of any backend in this program. */
 #include <stdio.h>
 #include <string.h>
+#include "platforms/cli/calibration.h"
 #include "platforms/cli/commands.h"
 #include "platforms/cli/setup.h"
 #include "platforms/gl/hl_gl.h"
@@ -38,6 +39,18 @@ static enum hl_result open_on(struct hlc_machine *m,
     return hl_device_open(&m->device, backend, &d);
 }
 
+/* The device's own caps, and over them what was measured. */
+static int take_caps(struct hlc_machine *m, const struct hlc_options *o)
+{
+    struct hlh_error error;
+    m->caps = *hl_device_caps(m->device);
+    if (!o->calibration ||
+        hlc_calibration_read(&m->caps, o->calibration, &error))
+        return HLC_DONE;
+    hlc_machine_close(m);
+    return hlc_fail(HLC_BAD, "%s", error.text);
+}
+
 int hlc_machine_open(struct hlc_machine *m, const struct hlc_options *o)
 {
     enum hl_result r = HL_ERR_NO_DEVICE;
@@ -54,10 +67,8 @@ int hlc_machine_open(struct hlc_machine *m, const struct hlc_options *o)
         if (strcmp(b->name, "null"))
             r = open_on(m, b, o);
     }
-    if (r == HL_OK) {
-        m->caps = *hl_device_caps(m->device);
-        return HLC_DONE;
-    }
+    if (r == HL_OK)
+        return take_caps(m, o);
     const char *why = m->complaint[0] ? m->complaint : hl_result_name(r);
     if (o->device)
         return hlc_fail(HLC_NO_DEVICE, "--device %s: %s", o->device, why);

@@ -7,6 +7,15 @@
 #include "platforms/cli/readback.h"
 #include "platforms/cli/render.h"
 
+/* Before the upload, so that a size no machine takes costs no time. */
+static int check_size(const struct hl_caps *caps, const struct hlc_options *o)
+{
+    if (o->width <= caps->max_tex_dim && o->height <= caps->max_tex_dim)
+        return HLC_DONE;
+    return hlc_fail(HLC_BAD, "--size: %s draws at most %u x %u", caps->device,
+                    caps->max_tex_dim, caps->max_tex_dim);
+}
+
 int hlc_stage_open(struct hlc_stage *s, struct hlh_scene *scene,
                    const struct hlc_options *o)
 {
@@ -14,6 +23,8 @@ int hlc_stage_open(struct hlc_stage *s, struct hlh_scene *scene,
     s->scene = *scene;
     memset(scene, 0, sizeof *scene);
     int code = hlc_machine_open(&s->machine, o);
+    if (code == HLC_DONE)
+        code = check_size(&s->machine.caps, o);
     if (code == HLC_DONE)
         code = hlc_world_open(&s->world, &s->machine, &s->scene, o);
     if (code != HLC_DONE)
@@ -63,8 +74,11 @@ int hlc_shot_make(struct hlc_shot *shot, char line[HLC_PLAN_LINE])
                              shot->memory);
     if (r == HL_OK)
         return HLC_DONE;
-    snprintf(line ? line : unread, HLC_PLAN_LINE, "%s: renderer: %s",
-             shot->stage->scene.name, hl_result_name(r));
+    const char *why = shot->stage->machine.complaint;
+    snprintf(line ? line : unread, HLC_PLAN_LINE, "%s: renderer at %u x %u: "
+             "%s", shot->stage->scene.name, shot->plan.width,
+             shot->plan.height, !bytes ? "too many objects or lights"
+                                : why[0] ? why : hl_result_name(r));
     hlc_shot_close(shot);
     return r == HL_ERR_MEMORY || r == HL_ERR_LIMIT ? HLC_BAD : HLC_NO_DEVICE;
 }

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Zlib */
 #ifndef HLC_SHOT_H
 #define HLC_SHOT_H
-/* One scene on one machine, and the ways to draw it: what sweeps, probes and
- * calibration share. Nothing here prints. */
+/* One scene on one machine, and the ways to draw it: what render, sweeps,
+ * probes and calibration share. But for hlc_stage_open nothing here prints. */
 #include "platforms/cli/setup.h"
 #include "platforms/host/image.h"
 
@@ -13,8 +13,9 @@ struct hlc_stage {
 };
 
 /* The machine of o->backend, o->profile and o->device, with *scene, which is
- * moved in (zeroed, whatever the result). An exit code; *stage is closed when
- * it is not HLC_DONE. Not to be moved while open. */
+ * moved in (zeroed, whatever the result). An exit code, after one line on
+ * stderr; *stage is closed when it is not HLC_DONE. Not to be moved while
+ * open. */
 int hlc_stage_open(struct hlc_stage *stage, struct hlh_scene *scene,
                    const struct hlc_options *o);
 void hlc_stage_close(struct hlc_stage *stage);

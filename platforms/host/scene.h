@@ -167,11 +167,11 @@ bool hlh_scene_lights_csv(struct hlh_scene *scene, const char *path,
 /* Write DIR-or-prefix: PREFIX.glb, PREFIX.lights.csv, PREFIX.camera. Nothing
  * half-written stays behind on failure.
  * The CSV holds the point lights of smooth falloff without shadow; all others
- * go into the GLB as KHR_lights_punctual. Loading the GLB gives back meshes, materials,
- * images, objects and the latter lights bit for bit, in the same order, and
- * adding the CSV (not replacing by it, if the GLB has lights) the rest; the
- * camera's direction to a float's rounding. The .camera file is one line,
- * "ex,ey,ez,tx,ty,tz,vfov 1280x720 ambient r,g,b", exact. Ambient and
+ * go into the GLB as KHR_lights_punctual. Loading the GLB gives back meshes,
+ * materials, images, objects and the latter lights bit for bit, in the same
+ * order, and adding the CSV (not replacing by it, if the GLB has lights) the
+ * rest; the camera's direction to a float's rounding. The .camera file is one
+ * line, "ex,ey,ez,tx,ty,tz,vfov 1280x720 ambient r,g,b", exact. Ambient and
  * background are not part of a GLB. */
 bool hlh_scene_write(const struct hlh_scene *scene, const char *prefix,
                      struct hlh_error *error);

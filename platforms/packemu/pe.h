@@ -138,7 +138,7 @@ struct pe_state {
     uint32_t max_done;
 };
 
-/* ---- formats: pe_format.c ------------------------------------------------- */
+/* ---- formats: pe_format.c ------------------------------------------------ */
 
 uint32_t pe_words(enum hl_format);
 /* n texels (n <= HL_PE_BATCH * 8) to and from planes of floats; channels that
@@ -162,7 +162,7 @@ void pe_blend(enum hl_format, enum hl_blend, float constant, int bias,
               const float *const rgba[4], const uint8_t *mask, uint32_t n,
               uint32_t *words);
 
-/* ---- memory: pe_memory.c -------------------------------------------------- */
+/* ---- memory: pe_memory.c ------------------------------------------------- */
 
 /* A bin's part of a target, pixel rows of `rect` with samples innermost, to
  * or from words: colour texels of pe_words each; depth targets one code each

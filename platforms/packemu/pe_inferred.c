@@ -83,6 +83,15 @@ static void unpack_unorm8(const uint32_t *w, uint32_t n, planes out)
             out[c][i] = (float)(int32_t)(w[i] >> 8 * c & 0xffu) / 255.0f;
 }
 
+static void unpack_unorm10(const uint32_t *w, uint32_t n, planes out)
+{
+    for (int c = 0; c < 3; c++)
+        for (uint32_t i = 0; i < n; i++)
+            out[c][i] = (float)(int32_t)(w[i] >> 10 * c & 1023u) / 1023.0f;
+    for (uint32_t i = 0; i < n; i++)
+        out[3][i] = (float)(int32_t)(w[i] >> 30) / 3.0f;
+}
+
 /* The words of a tap to its four channels. */
 PE_WIDE
 static void unpack(uint32_t bits, const uint32_t *const w[4], uint32_t n,
@@ -93,6 +102,8 @@ static void unpack(uint32_t bits, const uint32_t *const w[4], uint32_t n,
             memcpy(out[c], w[c], n * sizeof(float));
     } else if (bits == HL_BITS_UNORM8) {
         unpack_unorm8(w[0], n, out);
+    } else if (bits == HL_BITS_UNORM10) {
+        unpack_unorm10(w[0], n, out);
     } else if (bits == HL_BITS_UNORM16) {
         unpack_unorm16(w[0], n, out[0], out[1]);
         unpack_unorm16(w[1], n, out[2], out[3]);
@@ -104,7 +115,8 @@ static void unpack(uint32_t bits, const uint32_t *const w[4], uint32_t n,
 
 static uint32_t light_words(uint32_t bits)
 {
-    return bits == HL_BITS_FLOAT ? 4 : bits == HL_BITS_UNORM8 ? 1 : 2;
+    return bits == HL_BITS_FLOAT ? 4
+           : bits == HL_BITS_UNORM8 || bits == HL_BITS_UNORM10 ? 1 : 2;
 }
 
 /* What a filter makes of infinities is no number, and goes too. */

@@ -26,8 +26,10 @@ void hls_lab_clear(struct hls_lab *);
 
 enum hls_grid { HLS_LOG, HLS_LINEAR, HLS_WHOLE };
 
-enum { HLS_STEPS = 24 };         /* of a sweep, ends included; fewer where
-                                  * HLS_WHOLE has not that many              */
+/* Steps of a sweep, ends included; of --fast; fewer where HLS_WHOLE has not
+ * that many. With more numbers than steps HLS_WHOLE goes by ratio where both
+ * ends are above 0, else evenly. */
+enum { HLS_STEPS = 24, HLS_FAST_STEPS = 8 };
 
 /* One curve. Its boundary p*: the first p, from `from` on, whose measure is
  * above `limit` (`falling`: not above it any more), bisected to 1 % (LINEAR:
@@ -52,8 +54,10 @@ struct hls_row {
     enum hls_grid grid;
     const struct hls_case *cases;
     uint32_t n_cases;
-    /* Before a case and after it; NULL: nothing. False: the row has failed,
-     * with a line printed. *skip set to a reason: it cannot be had here. */
+    /* Before a case and after it (also where open failed, which must then not
+     * leave behind what close takes for its own; the lab's stage is closed
+     * besides); NULL: nothing. False: the row has failed, with a line printed.
+     * *skip set to a reason: it cannot be had here. */
     bool (*open)(struct hls_lab *, const struct hls_case *,
                  const char **skip);
     void (*close)(struct hls_lab *);
@@ -85,8 +89,19 @@ struct hls_result {
 void hls_run(struct hls_result *out, const struct hls_row *,
              const struct hls_case *, struct hls_lab *);
 /* report.c: one line of text; boundaries.csv, curves.csv and ROW.svg in a
- * folder. */
+ * folder, which is made. `machine`: "packemu:native". Without gnuplot there are
+ * no charts, which *note (120 bytes) then says. */
+const char *hls_verdict_name(enum hls_verdict);
+void hls_print_head(void);
 void hls_print(const struct hls_result *);
 bool hls_write(const char *folder, const struct hls_result *, uint32_t n,
-               const char *machine, struct hlh_error *error);
+               const char *machine, char note[120], struct hlh_error *error);
+/* check.c: boundaries as a file of text, and against one. */
+bool hls_save(const char *path, const struct hls_result *, uint32_t n,
+              const char *machine, bool fast, struct hlh_error *error);
+/* How many boundaries are more than a width of bisection worse than the
+ * file's: broken earlier or, falling, held later. A line each on stderr; -1
+ * with one line where the file cannot be used. */
+int hls_check(const char *path, const struct hls_result *, uint32_t n,
+              const char *machine, bool fast, struct hlh_error *error);
 #endif

@@ -109,6 +109,7 @@
 #define HL_BITS_UNORM16 1
 #define HL_BITS_FLOAT 2     /* 4 x 32 float                                  */
 #define HL_BITS_UNORM8 3
+#define HL_BITS_UNORM10 4   /* 3 x 10, alpha of 2                            */
 #define HL_SPECULAR_NONE 0
 #define HL_SPECULAR_CONSTANT 1
 #define HL_SPECULAR_CHANNEL 2

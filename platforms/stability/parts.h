@@ -1,0 +1,14 @@
+/* SPDX-License-Identifier: Zlib */
+#ifndef HLS_PARTS_H
+#define HLS_PARTS_H
+/* What report.c, plot.c and check.c share. */
+#include "platforms/stability/stability.h"
+
+enum { HLS_NAME = 64 };
+
+/* "row.case" */
+void hls_name(char out[HLS_NAME], const struct hls_result *);
+/* plot.c: FOLDER/ROW.svg, the n curves of one row. */
+bool hls_plot(const char *folder, const struct hls_result *, uint32_t n,
+              struct hlh_error *error);
+#endif
