@@ -192,7 +192,14 @@ test: deps
 	@sh tests/run.sh $(B)
 check: all
 	@sh tests/check.sh $(B)
-bench: all $(B)/tests/bench_light $(B)/tests/bench_stipple
+# Published results as ratios, growth with objects and lights, and what parts
+# take; ROUNDS and FRAMES (5 or 3, 20 or 5) may be set.
+bench: all $(B)/tests/bench_growth $(B)/tests/bench_light $(B)/tests/bench_stipple
+	@echo "RES-1 to RES-4: ratios of frame times, and the paper's (Kircher, Lawrance 2009)"
+	@ROUNDS=$${ROUNDS:-3} FRAMES=$${FRAMES:-5} sh tests/published.sh $(B)/halflight
+	@echo
+	@$(B)/tests/bench_growth
+	@echo
 	@sh tests/bench.sh $(B)/halflight fig8
 	@$(B)/tests/bench_light
 	@$(B)/tests/bench_stipple

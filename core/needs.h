@@ -165,6 +165,8 @@ struct hl_needs {
     enum hl_dsf dsf;
     float dsf_k, dsf_c;            /* 0 = 1.5 and 0.001                      */
     float dsf_tau;                 /* constant threshold, share of z; 0 = 1 % */
+    /* RGBA8_UNORM, RGB10A2_UNORM, RGBA16_UNORM (these with a peak),
+     * RGBA16_FLOAT or RGBA32_FLOAT, or a profile's; NONE = by its error. */
     enum hl_format light_format;
     /* RG16_UNORM, RG8_UNORM or RG16_FLOAT; NONE = the first, or what a
      * profile rules. */

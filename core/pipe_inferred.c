@@ -273,6 +273,7 @@ static void darken(struct hl_plan *p)
     p->specular = HL_SPECULAR_NONE;
     p->light_path = HL_LIGHT_PATH_RECTS;
     p->tile_depth = false;
+    p->light_error = 0;
     drop_reasons(p);
     hl_plan_why(p, HL_WHY_NO_LIGHT_PASS, 0, 0, 0, 0);
 }

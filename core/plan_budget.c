@@ -7,7 +7,7 @@
 struct search {
     enum hl_pipeline pipeline;   /* AUTO: any                                */
     const struct hl_ask *ask;
-    struct hl_plan *best;        /* before anything was found: any           */
+    struct hl_plan *best;        /* first the one without a budget           */
     bool found;
     uint32_t compared;
     float least_error, least_cost;
@@ -33,15 +33,14 @@ static bool better(const struct hl_needs *n, const struct hl_plan *a,
 static void compare(struct search *s, const struct hl_plan *p)
 {
     const struct hl_needs *n = &s->ask->n;
-    bool first = s->compared++ == 0;
-    if (first || p->error_codes < s->least_error)
+    s->compared++;
+    if (p->error_codes < s->least_error)
         s->least_error = p->error_codes;
-    if (first || p->cost_ms < s->least_cost)
+    if (p->cost_ms < s->least_cost)
         s->least_cost = p->cost_ms;
     if (!within(n, p) || (s->found && !better(n, p, s->best)))
         return;
-    if (p != s->best)
-        *s->best = *p;
+    *s->best = *p;
     s->found = true;
 }
 
@@ -121,8 +120,8 @@ enum hl_refusal hl_plan_budget(struct hl_plan *p, enum hl_pipeline pipeline,
                                const struct hl_ask *ask)
 {
     const struct hl_needs *n = &ask->n;
-    struct search s = { pipeline, ask, p, false, 0, 0, 0 };
-    compare(&s, p);
+    struct search s = { pipeline, ask, p, within(n, p), 0, p->error_codes,
+                        p->cost_ms };
     for (int i = 1; i < HL_PIPELINE_COUNT; i++) {
         if (pipeline != HL_PIPELINE_AUTO && (int)pipeline != i)
             continue;

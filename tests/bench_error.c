@@ -14,7 +14,6 @@
 #include "platforms/cli/commands.h"
 #include "platforms/cli/plan_text.h"
 #include "platforms/cli/probe.h"
-#include "platforms/reference/reference.h"
 
 enum { WAYS = 64 };
 
@@ -94,21 +93,6 @@ static void budget(struct hlc_stage *s, const struct hlc_options *base,
     hlh_picture_free(&p);
 }
 
-static bool truth(struct hlh_picture *out, const struct hlc_stage *s,
-                  const struct hlc_options *o)
-{
-    struct hlr_stats stats;
-    struct hlr_options r = { .width = o->width, .height = o->height,
-                             .samples = o->samples,
-                             .normal_maps = !o->no_normal_maps,
-                             .no_specular = o->no_specular,
-                             .shadows = o->shadows != HL_SHADOWS_NONE };
-    size_t n = (size_t)o->width * o->height * 3;
-    *out = (struct hlh_picture){ o->width, o->height,
-                                 malloc(n * sizeof(float)), true };
-    return out->rgb && hlr_render(out->rgb, NULL, &s->scene, &r, &stats);
-}
-
 static void table_forward(struct hlc_stage *s, const struct hlc_options *o,
                           const struct hl_probe *probe,
                           const struct hlh_picture *right, struct ways *all)
@@ -138,7 +122,8 @@ static int table(struct hlc_stage *s, const struct hlc_options *o)
     struct hl_probe probe;
     struct hlh_picture right;
     struct ways all = { { { 0, 0 } }, 0 };
-    if (hlc_probe_measure(&probe, s, o) != HLC_DONE || !truth(&right, s, o))
+    hlc_probe_truth(&right, s, o);
+    if (hlc_probe_measure(&probe, s, o) != HLC_DONE || !right.rgb)
         return 1;
     printf("# %s: full %.4f half %.4f eight %.4f blends %.0f forward %.4f\n",
            s->scene.name, (double)probe.full, (double)probe.half,

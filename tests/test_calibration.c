@@ -171,6 +171,19 @@ static void bad_files_are_refused(void **state)
     }
 }
 
+/* What comes after a byte of 0 would not be seen. */
+static void zero_bytes_are_refused(void **state)
+{
+    static const char text[] = HEAD "cost.draw_ns = 1\0 no number\n";
+    struct hl_caps caps;
+    struct hlh_error error;
+    (void)state;
+    any_caps(&caps);
+    assert_false(hlc_calibration_parse(&caps, text, sizeof text - 1, "z",
+                                       &error));
+    sk_assert_contains(error.text, "line 4: a byte of 0");
+}
+
 static void long_files_are_refused(void **state)
 {
     struct hl_caps caps;
@@ -353,6 +366,48 @@ static void error_lines(char *out, const char *text)
         strncat(out, p, strcspn(p + 1, "\n") + 1);
 }
 
+static cJSON *json_file(void **state, const char *name)
+{
+    char path[SK_PATH], *text;
+    size_t size;
+    struct hlh_error error;
+    sk_path(path, state, name);
+    assert_true(hlh_file_read(&text, &size, path, &error));
+    cJSON *j = tool_json(text);
+    free(text);
+    return j;
+}
+
+/* No picture that a search may choose is further off than is predicted. */
+static void check_points(const cJSON *j, double margin)
+{
+    const cJSON *p;
+    uint32_t choices = 0, all = 0;
+    cJSON_ArrayForEach(p, tool_at(j, "errors")) {
+        bool few = !strcmp(tool_text(p, "light_format"), "RGB10A2_UNORM");
+        double codes = tool_number(p, "rms_codes");
+        all++;
+        if (few || tool_number(p, "eighths") < 2)
+            continue;
+        choices++;
+        assert_true(codes > 0 &&
+                    codes <= tool_number(p, "predicted_codes") * margin);
+    }
+    /* Eight sizes in one format, four more formats in three sizes. */
+    assert_int_equal(all, 8 + 4 * 3);
+    assert_int_equal(choices, all - 1 - 3);
+}
+
+/* One light costs packemu the same however it gets to the stage; a figure of
+ * its own is the difference of frames, in processor time. */
+static void check_lights(const cJSON *j)
+{
+    const cJSON *v = tool_at(j, "values");
+    double uniform = cJSON_GetObjectItem(v, "cost.light_ns")->valuedouble;
+    double list = cJSON_GetObjectItem(v, "cost.light_gather_ns")->valuedouble;
+    assert_true(list > uniform / 3 && list < uniform * 3);
+}
+
 static void calibrate_makes_a_file(void **state)
 {
     static struct tool_run run;
@@ -372,6 +427,10 @@ static void calibrate_makes_a_file(void **state)
     /* Smaller is worse. */
     for (int k = 2; k < 7; k++)
         assert_true(caps.error.eighths[k] > caps.error.eighths[k + 1]);
+    cJSON *j = json_file(state, "c.json");
+    check_points(j, (double)caps.error.margin);
+    check_lights(j);
+    cJSON_Delete(j);
     char *text;
     size_t size;
     assert_true(hlh_file_read(&text, &size, path, &error));
@@ -390,6 +449,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(keys_are_apart),
         cmocka_unit_test(what_is_not_said_stays),
         cmocka_unit_test(bad_files_are_refused),
+        cmocka_unit_test(zero_bytes_are_refused),
         cmocka_unit_test(long_files_are_refused),
         cmocka_unit_test(hostile_bytes),
         cmocka_unit_test(locale_does_not_matter),

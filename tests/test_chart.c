@@ -210,6 +210,36 @@ static void bad_files_are_one_line(void **state)
     hlt_table_free(&t);
 }
 
+/* Any byte may be any other: the file is read, or refused in one line. */
+static void any_byte_may_be_wrong(void **state)
+{
+    static const char bytes[] = { 0, ',', '\n', '-', 'e', '9', (char)200 };
+    char path[SK_PATH];
+    struct hlh_error error;
+    struct hlt_table t = begin("9 rounds"), back;
+    struct hlt_row r = row_of("s", "a", 1.0 / 3);
+    uint32_t read = 0, not_read = 0;
+    sk_path(path, state, "bytes.csv");
+    assert_true(hlt_table_append(&t, &r, path, &error));
+    char *text = text_of(path);
+    size_t n = strlen(text);
+    for (size_t i = 0; i < n; i++) {
+        char was = text[i];
+        text[i] = bytes[i % sizeof bytes];
+        sk_write(state, "bytes.csv", text, n);
+        text[i] = was;
+        bool ok = hlt_table_read(&back, path, &error);
+        read += ok;
+        not_read += !ok;
+        if (!ok)
+            assert_true(back.n == 0 && !strchr(error.text, '\n'));
+        hlt_table_free(&back);
+    }
+    assert_true(read > 0 && not_read > read);
+    free(text);
+    hlt_table_free(&t);
+}
+
 /* ---- ways --------------------------------------------------------------- */
 
 static void check_ways(const char *profile, bool fast, uint32_t least,
@@ -469,6 +499,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(rows_are_sorted),
         cmocka_unit_test(a_cut_row_is_not_there),
         cmocka_unit_test(bad_files_are_one_line),
+        cmocka_unit_test(any_byte_may_be_wrong),
         cmocka_unit_test(no_way_is_twice),
         cmocka_unit_test(what_is_dearer_counts_more),
         cmocka_unit_test(a_sweep_repeats_and_goes_on),

@@ -305,6 +305,9 @@ static void what_becomes_worse_is_said(void **state)
     assert_int_equal(check(&t, path, said, &error), 0);
     assert_string_equal(said, "");
     for (int i = 0; i < 3; i++)
+        t.rows[i].value[HLT_FLIP] *= 1.024 / 1.0225;
+    assert_int_equal(check(&t, path, said, &error), 1);
+    for (int i = 0; i < 3; i++)
         t.rows[i].value[HLT_FLIP] /= 1.1;
     assert_int_equal(check(&t, path, said, &error), 0);
     sk_assert_contains(said, "flip, all ways: the front's area is 5.2");

@@ -378,6 +378,7 @@ static void dark_plans_give_no_reasons_for_light(void **state)
         n.lights_per_pixel = n.lights_per_object = 0;
         struct hl_plan p = planned(&n, &c);
         assert_int_equal(p.dsf, HL_DSF_DARK);
+        assert_true(p.light_error == 0);
         assert_true(has_reason(&p, HL_WHY_NO_LIGHT_PASS));
         assert_true(has_reason(&p, HL_WHY_COLOR_FORMAT));
         for (size_t k = 0; k < sizeof light / sizeof *light; k++)

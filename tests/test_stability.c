@@ -5,11 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "tests/scene_kit.h"
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
+#include "tests/cli_kit.h"
 #include "platforms/cli/flicker.h"
 #include "platforms/host/image.h"
 #include "platforms/stability/stability.h"
@@ -137,6 +133,10 @@ static void few_numbers_are_taken_once(void **state)
     run(&r, HLS_WHOLE, &c);
     assert_int_equal(r.n, 16);
     assert_true(r.found && r.boundary == 5 && r.at == 1);
+    /* 24 ratios from 1 to 40 round to fewer numbers. */
+    c = curve(STEP, 1, 40, 5);
+    run(&r, HLS_WHOLE, &c);
+    assert_true(r.found && r.boundary == 5);
 }
 
 static void a_sweep_has_its_steps(void **state)
@@ -420,8 +420,50 @@ static void what_is_worse_moves_a_boundary(void **state)
     }
 }
 
-int main(void)
+/* ---- the command --------------------------------------------------------- */
+
+static void the_tool_refuses_in_a_line(void **state)
 {
+    static const struct tool_line bad[] = {
+        { "stability --only nothing", "no row begins with it" },
+        { "stability thin", "takes no further argument" },
+        { "stability --out here/there/out --only self", "here/there" },
+        { "stability --fast --check missing.txt", "missing.txt" },
+    };
+    static const struct tool_line none[] = {
+        { "stability --backend null", "draws nothing" },
+    };
+    TOOL_REFUSE(bad, 2);
+    TOOL_REFUSE(none, 3);
+}
+
+static void the_tool_says_what_moved(void **state)
+{
+    static struct tool_run t;
+    tool_done(&t, state, "stability --fast --only gap.slope --save was.txt");
+    sk_assert_contains(t.out, "1 held, 0 moved, 0 broken, 0 skipped");
+    tool_done(&t, state, "stability --fast --only gap.slope --check was.txt "
+                         "--json -");
+    cJSON *j = tool_json(t.out);
+    assert_true(tool_number(j, "held") == 1 && tool_number(j, "moved") == 0);
+    const cJSON *c = cJSON_GetArrayItem(tool_at(j, "cases"), 0);
+    assert_string_equal(tool_text(c, "verdict"), "held");
+    assert_true(tool_number(c, "boundary") >= tool_number(c, "low") &&
+                tool_number(c, "boundary") <= tool_number(c, "high"));
+    cJSON_Delete(j);
+    tool_run(&t, state, "stability --fast --only gap.slope --check was.txt "
+                        "--dsf-c 0.02");
+    assert_int_equal(t.code, 1);
+    sk_assert_contains(t.err, "gap.slope: boundary was 0.001003, now 0.0");
+    tool_done(&t, state, "stability --list --only gap");
+    sk_assert_contains(t.out, "slope");
+}
+
+int main(int argc, char **argv)
+{
+    (void)argc;
+    if (!tool_find(argv[0]))
+        return 1;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(boundaries_are_found),
         cmocka_unit_test(whole_numbers_are_exact),
@@ -433,6 +475,8 @@ int main(void)
         cmocka_unit_test(worse_boundaries_are_noticed),
         cmocka_unit_test(files_are_written),
         cmocka_unit_test(flicker_is_what_comes_and_goes),
+        cmocka_unit_test(the_tool_refuses_in_a_line),
+        cmocka_unit_test(the_tool_says_what_moved),
         cmocka_unit_test(what_is_worse_moves_a_boundary),
         cmocka_unit_test(all_boundaries_hold),
     };

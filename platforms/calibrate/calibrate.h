@@ -3,19 +3,16 @@
 #define HLK_CALIBRATE_H
 /* `halflight calibrate`: what the planner predicts by, measured. Reading
  * order: plane.c (two scenes made for measuring), rounds.c (frames timed in
- * turn), units.c (each unit cost by differences of them), frames.c (how well
+ * turn), units.c and
+ * readback.c (each unit cost by differences of them), frames.c (how well
  * whole frames of scenes come out by them), errors.c (what the size and format
  * of the L-buffer cost in accuracy), report.c, cmd_calibrate.c. */
 #include "platforms/cli/calibration.h"
 #include "platforms/cli/shot.h"
 
-/* ---- scenes ------------------------------------------------------------- */
+/* ---- plane.c ------------------------------------------------------------ */
 
-/* Scenes that are drawn where none are named; NULL ends them. */
-extern const char *const hlk_scenes[];
-bool hlk_is_scene(const char *name);
-
-/* plane.c: a wall that fills the view of a picture of this aspect, and 64
+/* A wall that fills the view of a picture of this aspect, and 64
  * lights before it whose rectangles cover all of that. */
 bool hlk_plane(struct hlh_scene *out, double aspect, struct hlh_error *error);
 /* 400 boxes of a pixel or two, 12 cuts^2 triangles each, no lights. */
@@ -54,12 +51,20 @@ struct hlk_notes {
 void hlk_note(struct hlk_notes *, const char *key, const char *format, ...);
 const char *hlk_note_of(void *notes, const char *key);
 
-/* ---- units.c ------------------------------------------------------------ */
+/* Values of a key, one a round: what is sure goes into caps, or may_be_0 and
+ * not below it; a note in any case. */
+void hlk_take(struct hl_caps *caps, struct hlk_notes *notes, const char *key,
+              const double *v, uint32_t n, bool may_be_0);
+
+/* ---- units.c, readback.c ------------------------------------------------ */
 
 /* Into caps->cost, what cannot be told left as it is. An exit code, after one
  * line. `o`: backend, size. */
 int hlk_units(struct hl_caps *caps, struct hlk_notes *notes,
               const struct hlc_options *o);
+/* sync_ns and readback_ns, on an open device. */
+void hlk_readback(struct hl_caps *caps, struct hlk_notes *notes,
+                  struct hl_device *device);
 
 /* ---- frames.c ----------------------------------------------------------- */
 
@@ -83,11 +88,12 @@ int hlk_frames_measure(struct hlk_frames *out, const struct hlc_options *o,
 /* ---- errors.c ----------------------------------------------------------- */
 
 enum { HLK_SCENES = 16, HLK_POINTS = 24 };
-/* A picture of one size and format of L-buffer against forward's, codes. */
+/* A picture of one size and format of L-buffer, against the truth. */
 struct hlk_point {
     uint32_t eighths;
     enum hl_format format;
-    double codes, predicted;     /* by the scene's probe, margin 1           */
+    double codes;                /* RMS, 8-bit sRGB                          */
+    double predicted;            /* by the scene's probe, margin 1           */
     bool choice;                 /* a planner may take it unasked            */
 };
 struct hlk_error {

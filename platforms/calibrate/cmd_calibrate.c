@@ -11,8 +11,9 @@ static int settle(struct hlk_work *w, const struct hlc_options *o)
 {
     struct hlh_error error;
     w->o = *o;
-    for (uint32_t i = 0; o->n_args == 0 && hlk_scenes[i]; i++)
-        w->o.arg[w->o.n_args++] = hlk_scenes[i];
+    const char *const *scene = hlc_calibration_scenes;
+    for (; o->n_args == 0 && *scene; scene++)
+        w->o.arg[w->o.n_args++] = *scene;
     if (w->o.n_args > HLK_SCENES)
         return hlc_fail(HLC_BAD, "calibrate: more than %d scenes",
                         (int)HLK_SCENES);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Zlib */
 /* What the size and the format of the L-buffer cost in accuracy, against the
- * forward picture of the same scene. */
+ * reference renderer's picture of the same scene. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -47,7 +47,7 @@ static bool draw(struct hlh_picture *out, struct hlc_stage *stage,
 
 /* ---- a scene ------------------------------------------------------------ */
 
-struct shown { struct hlh_picture forward, size[9]; };
+struct shown { struct hlh_picture truth, size[9]; };
 
 static void add(struct hlk_error *e, uint32_t eighths, enum hl_format format,
                 const struct hlh_picture *a, const struct hlh_picture *b)
@@ -75,7 +75,7 @@ static bool draw_sizes(struct hlk_error *e, struct shown *s,
         ok = draw(&s->size[k], stage, &x);
     }
     for (uint32_t k = 1; k <= 8; k++)
-        add(e, k, *best, &s->size[k], &s->forward);
+        add(e, k, *best, &s->size[k], &s->truth);
     return ok;
 }
 
@@ -103,7 +103,7 @@ static bool draw_formats(struct hlk_error *e, const struct shown *s,
         if (f == best)
             continue;
         ok = draw(&p, stage, &x);
-        add(e, sizes[i / N_FORMATS], f, &p, &s->forward);
+        add(e, sizes[i / N_FORMATS], f, &p, &s->truth);
         hlh_picture_free(&p);
     }
     return ok;
@@ -116,11 +116,12 @@ static bool draw_all(struct hlk_error *e, struct hlc_stage *stage,
     enum hl_format best = HL_FORMAT_NONE;
     struct hlc_options x = options_of(o, 0, HL_FORMAT_NONE);
     memset(&s, 0, sizeof s);
-    bool ok = draw(&s.forward, stage, &x) &&
+    hlc_probe_truth(&s.truth, stage, &x);
+    bool ok = (s.truth.rgb || draw(&s.truth, stage, &x)) &&
               draw_sizes(e, &s, stage, o, &best) &&
               draw_formats(e, &s, stage, o, best);
     share_sizes(e, &s);
-    hlh_picture_free(&s.forward);
+    hlh_picture_free(&s.truth);
     for (int k = 0; k < 9; k++)
         hlh_picture_free(&s.size[k]);
     return ok;
@@ -228,7 +229,8 @@ static void margin(struct hl_error_model *m, struct hlk_notes *notes,
                      e[i].scene, (unsigned)p->eighths,
                      hl_format_info(p->format)->name);
         }
-    m->margin = (float)most;
+    /* Up to the next thousandth: a budget of just that is kept too. */
+    m->margin = (float)(ceil(most * 1000) / 1000);
     hlk_note(notes, "error.margin", "no more of %u pictures%s",
              (unsigned)points, where);
 }

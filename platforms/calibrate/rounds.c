@@ -102,3 +102,36 @@ const char *hlk_note_of(void *user, const char *key)
             return notes->note[i].text;
     return NULL;
 }
+
+/* ---- values ------------------------------------------------------------- */
+
+static float *slot(struct hl_caps *caps, const char *key)
+{
+    char name[HLC_CALIBRATION_KEY];
+    float *value;
+    for (uint32_t i = 0;
+         (value = hlc_calibration_value(caps, i, name, NULL)) != NULL; i++)
+        if (!strcmp(name, key))
+            return value;
+    return NULL;
+}
+
+void hlk_take(struct hl_caps *caps, struct hlk_notes *notes, const char *key,
+              const double *v, uint32_t n, bool may_be_0)
+{
+    struct hlk_value x = hlk_value_of(v, n);
+    float *to = slot(caps, key);
+    bool is_format = !strncmp(key, "cost.format_", 12);
+    if (x.n == 0) {
+        if (!is_format)
+            hlk_note(notes, key, "built-in: this machine draws no such "
+                     "frame");
+    } else if (hlk_is_sure(&x) || (may_be_0 && x.median >= 0)) {
+        *to = (float)x.median;
+        hlk_note(notes, key, "quartiles %.3g to %.3g of %u rounds", x.low,
+                 x.high, (unsigned)x.n);
+    } else {
+        hlk_note(notes, key, "built-in: %.3g, %.3g to %.3g, does not tell "
+                 "it from 0", x.median, x.low, x.high);
+    }
+}

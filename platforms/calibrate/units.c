@@ -8,7 +8,6 @@
 #include <string.h>
 #include "platforms/calibrate/calibrate.h"
 #include "platforms/cli/commands.h"
-#include "platforms/cli/render.h"
 
 enum { ROUNDS = 15, FINE_CUTS = 5 };
 enum place { PLANE, COARSE, FINE, PLACES };
@@ -203,10 +202,11 @@ static double light(const struct bench *b, int r)
     return (light_inferred(b, r) + forward) / 2;
 }
 
+/* Forward has none of these: of batches alone. */
 static double light_flat(const struct bench *b, int r)
 {
-    return light(b, r) + apart(b, FLAT_40, FLAT_8, r, 32 * b->pixels) -
-           batched(b, r);
+    return apart(b, FLAT_40, FLAT_8, r, 32 * b->pixels) -
+           draw_part(b, r) / 8;
 }
 
 static double light_gather(const struct bench *b, int r)
@@ -285,37 +285,6 @@ static double write_more(const struct bench *b, int r, int i)
 
 /* ---- what they come to -------------------------------------------------- */
 
-static float *slot(struct hl_caps *caps, const char *key)
-{
-    char name[HLC_CALIBRATION_KEY];
-    float *value;
-    for (uint32_t i = 0;
-         (value = hlc_calibration_value(caps, i, name, NULL)) != NULL; i++)
-        if (!strcmp(name, key))
-            return value;
-    return NULL;
-}
-
-static void take(struct bench *b, const char *key, const double *v,
-                 uint32_t n, bool may_be_0)
-{
-    struct hlk_value x = hlk_value_of(v, n);
-    float *to = slot(b->caps, key);
-    bool is_format = !strncmp(key, "cost.format_", 12);
-    if (x.n == 0) {
-        if (!is_format)
-            hlk_note(b->notes, key, "built-in: this machine draws no such "
-                     "frame");
-    } else if (hlk_is_sure(&x) || (may_be_0 && x.median >= 0)) {
-        *to = (float)x.median;
-        hlk_note(b->notes, key, "quartiles %.3g to %.3g of %u rounds", x.low,
-                 x.high, (unsigned)x.n);
-    } else {
-        hlk_note(b->notes, key, "built-in: %.3g, %.3g to %.3g, does not tell "
-                 "it from 0", x.median, x.low, x.high);
-    }
-}
-
 static void scalars(struct bench *b)
 {
     static const struct {
@@ -332,7 +301,8 @@ static void scalars(struct bench *b)
         double v[ROUNDS];
         for (int r = 0; r < ROUNDS; r++)
             v[r] = units[i].of(b, r);
-        take(b, units[i].key, v, ROUNDS, units[i].of == untaken);
+        hlk_take(b->caps, b->notes, units[i].key, v, ROUNDS,
+                 units[i].of == untaken);
     }
 }
 
@@ -346,7 +316,7 @@ static void of_format(struct bench *b, const char *what, enum hl_format f,
              hl_format_info(f)->name);
     for (int r = 0; r < ROUNDS; r++)
         v[r] = base + (more ? more(b, r, i) : 0);
-    take(b, key, v, ROUNDS, false);
+    hlk_take(b->caps, b->notes, key, v, ROUNDS, false);
 }
 
 /* Against the values that formats have in common: 8 bytes blended, 4 to 8
@@ -368,61 +338,6 @@ static void formats(struct bench *b)
     }
 }
 
-/* ---- reading back ------------------------------------------------------- */
-
-static hl_tex depth_target(struct hl_device *d, uint32_t w, uint32_t h)
-{
-    const struct hl_caps *caps = hl_device_caps(d);
-    struct hl_tex_desc t = { "calibrate", HL_FORMAT_D32_FLOAT, w, h, 1, 1,
-                             HL_TEX_TARGET | HL_TEX_READBACK, HL_FORMAT_NONE,
-                             { 0 } };
-    hl_tex tex = { 0 };
-    if (!(caps->format[t.format].use & HL_USE_TARGET))
-        t.format = HL_FORMAT_D24_UNORM_S8;
-    if (!caps->console_memory &&
-        (caps->format[t.format].use & HL_USE_TARGET))
-        hl_tex_create(d, &tex, &t);
-    return tex;
-}
-
-/* A clear, waited for, and its depth read; NAN where that cannot be. */
-static double read_ms(struct hl_device *d, hl_tex tex, uint32_t w, uint32_t h,
-                      float *room)
-{
-    struct hl_pass pass;
-    memset(&pass, 0, sizeof pass);
-    pass.label = "calibrate";
-    pass.depth.tex = tex;
-    pass.depth.load = HL_LOAD_CLEAR;
-    double start = hlc_now_ms();
-    if (!tex.id || hl_pass_run(d, &pass) != HL_OK ||
-        hl_tex_read(d, tex, room, (size_t)w * h * sizeof *room) != HL_OK)
-        return NAN;
-    return hlc_now_ms() - start;
-}
-
-/* All of a target, and one texel, which is submit and wait alone. */
-static void reading(struct bench *b)
-{
-    float *room = calloc(256 * 256, sizeof *room);
-    struct hl_device *d = b->stage[PLANE].machine.device;
-    hl_tex all = depth_target(d, 256, 256), one = depth_target(d, 1, 1);
-    double sync[ROUNDS], texel[ROUNDS];
-    for (int r = -1; r < ROUNDS && room; r++) {
-        double long_ms = read_ms(d, all, 256, 256, room);
-        double short_ms = read_ms(d, one, 1, 1, room);
-        if (r < 0)
-            continue;
-        sync[r] = short_ms * 1e6;
-        texel[r] = (long_ms - short_ms) * 1e6 / (256.0 * 256.0);
-    }
-    take(b, "cost.sync_ns", sync, room ? ROUNDS : 0, false);
-    take(b, "cost.readback_ns", texel, room ? ROUNDS : 0, false);
-    free(room);
-    hl_tex_destroy(d, &all);
-    hl_tex_destroy(d, &one);
-}
-
 /* ---- all ---------------------------------------------------------------- */
 
 static int measure(struct bench *b)
@@ -437,7 +352,7 @@ static int measure(struct bench *b)
         return hlc_fail(HLC_NO_DEVICE, "calibrate: the device failed");
     scalars(b);
     formats(b);
-    reading(b);
+    hlk_readback(b->caps, b->notes, b->stage[PLANE].machine.device);
     return HLC_DONE;
 }
 

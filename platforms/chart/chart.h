@@ -118,8 +118,9 @@ bool hlt_plot(const char *path, const char *title, const struct hlt_point *,
               uint32_t n, enum hlt_column cost, enum hlt_column error,
               struct hlh_error *error_out);
 
-/* check.c: hypervolumes of every scene, machine and error column, with their
- * corners: written, and compared with a file's. */
+/* check.c: hypervolumes over counted cost of every scene and machine, of all
+ * ways and of each group of them, with their corners: written, and compared
+ * with a file's. */
 bool hlt_save(const struct hlt_table *, const char *path,
               struct hlh_error *error);
 /* How many are more than 2 % below the file's, a line each on stderr; -1 with

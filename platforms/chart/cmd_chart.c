@@ -39,9 +39,9 @@ static int settle(struct chart *c)
     struct hlc_options *o = &c->o;
     char *bytes = NULL;
     size_t n = 0;
-    if (o->fast && o->width == 640 && o->height == 360) {
-        o->width = 320;
-        o->height = 180;
+    if (!o->width) {
+        o->width = o->fast ? 320 : 640;
+        o->height = o->fast ? 180 : 360;
     }
     if (!o->has_rounds)
         o->rounds = o->fast ? 3 : 9;

@@ -46,22 +46,26 @@ uint32_t hlt_group_of(const struct hlt_chart *c, const char *name)
     uint32_t g = 0;
     while (g < c->n_groups && strcmp(c->group[g], name))
         g++;
-    return g;
+    return g < HLT_GROUPS ? g : HLT_GROUPS - 1;
 }
 
-static int by_text(const void *a, const void *b)
-{
-    return strcmp(*(const char *const *)a, *(const char *const *)b);
-}
-
+/* First those of ways.c, each with its own mark in every chart, whichever of
+ * them have points there; then what else there is. */
 static void find_groups(struct hlt_chart *c)
 {
+    static const char *const known[] = {
+        "size x format", "pipeline", "filter x size", "normals",
+        "samples x size", "lights a blend x format", "light path"
+    };
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+        c->group[c->n_groups++] = known[i];
     for (uint32_t i = 0; i < c->n; i++) {
         const char *name = c->point[i].row->group;
-        if (c->n_groups < HLT_GROUPS && hlt_group_of(c, name) == c->n_groups)
+        uint32_t g = hlt_group_of(c, name);
+        if (g == c->n_groups)
             c->group[c->n_groups++] = name;
+        c->used[g] = true;
     }
-    qsort(c->group, c->n_groups, sizeof *c->group, by_text);
 }
 
 /* ---- axes --------------------------------------------------------------- */
@@ -99,8 +103,8 @@ bool hlt_is_beyond(const struct hlt_chart *c, const struct hlt_point *p)
 }
 
 /* A few ways that cost or miss many times as much as all of the front would
- * press it into a corner: half of an axis is the front's, where it is an
- * octave long. */
+ * press it into a corner: they may have half of an axis, or where the front is
+ * short, an octave of cost and six (36 dB) of error. */
 static void find_limits(struct hlt_chart *c)
 {
     double cost[2] = { (double)INFINITY, 0 }, error[2] = { cost[0], 0 };
@@ -114,7 +118,7 @@ static void find_limits(struct hlt_chart *c)
         error[1] = fmax(error[1], p->error);
     }
     c->right_limit = cost[1] * fmax(2, cost[1] / cost[0]);
-    c->worst_limit = error[1] * fmax(2, error[1] / error[0]);
+    c->worst_limit = error[1] * fmax(64, error[1] / error[0]);
 }
 
 static void make_axes(struct hlt_chart *c)

@@ -23,8 +23,8 @@ struct hlt_chart {
     uint32_t n;
     enum hlt_column cost, error;
     struct hlt_axis x, y;
-    const char *group[HLT_GROUPS];   /* sorted: one mark in all charts of a
-                                      * sweep                                */
+    const char *group[HLT_GROUPS];   /* the number is that of its mark       */
+    bool used[HLT_GROUPS];           /* some point is of it                  */
     uint32_t n_groups;
     bool bars;                       /* low..high differ somewhere           */
     double right_limit, worst_limit; /* cost and error beyond which a point
@@ -51,6 +51,7 @@ double hlt_point_y(const struct hlt_chart *, const struct hlt_point *);
  * pay for it: no word names it. */
 bool hlt_is_notable(const struct hlt_chart *, const struct hlt_point *);
 bool hlt_is_beyond(const struct hlt_chart *, const struct hlt_point *);
+/* The last one has all that there are too many of. */
 uint32_t hlt_group_of(const struct hlt_chart *, const char *name);
 
 /* plot_script.c: for gnuplot; script->failed when memory is out. */

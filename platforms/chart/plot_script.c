@@ -56,7 +56,7 @@ static const char *axis_name(enum hlt_column c)
     switch (c) {
     case HLT_COST: return "cost by counted work, ns a pixel";
     case HLT_MOVED: return "bytes read and written a pixel";
-    case HLT_RATIO: return "time of a frame over that of the base, inferred 5/8";
+    case HLT_RATIO: return "time of a frame over that of inferred 5/8";
     case HLT_LIGHTS: return "light evaluations a pixel";
     case HLT_PSNR: return "error as PSNR, dB (nearer is lower)";
     case HLT_RELMSE: return "error: relMSE";
@@ -95,8 +95,8 @@ static void frame(struct hlh_buffer *b, const struct hlt_chart *c,
                      c->right / HLT_WIDTH, (double)HLT_BOTTOM / HLT_HEIGHT,
                      top / HLT_HEIGHT);
     hlh_buffer_print(b, "set logscale xy\nset key off\nset errorbars 0.5\n"
-                     "set border 3 lc rgb '#888888' lw 1\nset grid back lc rgb '#e4e4e4' lt 1 lw "
-                     "1\n");
+                     "set border 3 lc rgb '#888888' lw 1\n"
+                     "set grid back lc rgb '#e4e4e4' lt 1 lw 1\n");
     tics(b, 'x', &c->x);
     tics(b, 'y', &c->y);
     words_at(b, HLT_LEFT, HLT_HEIGHT - 26, &heading, title);
@@ -122,7 +122,9 @@ static void legend(struct hlh_buffer *b, const struct hlt_chart *c)
     double x = HLT_LEFT, y = HLT_HEIGHT - 75;
     for (uint32_t g = 0; g < c->n_groups; g++) {
         double wide = 34 + hlt_text_width(c->group[g], plain.size);
-        if (g > 0 && x + wide > HLT_WIDTH) {
+        if (!c->used[g])
+            continue;
+        if (x > HLT_LEFT && x + wide > HLT_WIDTH) {
             x = HLT_LEFT;
             y -= ROW;
         }

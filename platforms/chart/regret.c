@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "platforms/calibrate/calibrate.h"
+#include "platforms/cli/calibration.h"
 #include "platforms/host/image.h"
 #include "platforms/host/util.h"
 
@@ -45,7 +45,7 @@ static struct hlt_case judge(const struct hlt_table *t,
 {
     struct hlt_case c = { chosen, cheapest(t, chosen), HLT_MET, false, NAN,
                           NAN, NAN, NAN };
-    c.calibrated = hlk_is_scene(chosen->scene);
+    c.calibrated = hlc_is_calibration_scene(chosen->scene);
     if (!chosen->pipeline[0]) {
         c.verdict = c.best ? HLT_REFUSED_WRONGLY : HLT_REFUSED;
         return c;

@@ -162,7 +162,7 @@ static int plot(const struct hlt_table *t, const char *folder,
                                   &why));
     free(f.point);
     if (!ok)
-        fprintf(stderr, "halflight: %s; no charts\n", why.text);
+        fprintf(stderr, "halflight: %s\n", why.text);
     return !ok ? -1 : empty ? 0 : 1;
 }
 

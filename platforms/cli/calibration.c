@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Zlib */
 #include "platforms/cli/calibration.h"
 #include <errno.h>
-#include <float.h>
 #include <locale.h>
 #include <math.h>
 #include <stdio.h>
@@ -9,6 +8,18 @@
 #include <string.h>
 #include "platforms/host/image.h"
 #include "platforms/host/util.h"
+
+const char *const hlc_calibration_scenes[] = {
+    "fig8", "fig9", "lidr", "many", NULL
+};
+
+bool hlc_is_calibration_scene(const char *name)
+{
+    for (int i = 0; hlc_calibration_scenes[i]; i++)
+        if (!strcmp(hlc_calibration_scenes[i], name))
+            return true;
+    return false;
+}
 
 /* ---- keys --------------------------------------------------------------- */
 
@@ -135,7 +146,8 @@ static bool number(struct reading *r, float *out, const char *value, bool share)
     bool plain = value[strspn(value, "0123456789+-.eE")] == 0;
     if (!plain || strlen(value) >= sizeof text || end == text || *end)
         return wrong(r, "'%.40s' is no number", value);
-    if (!(x <= (double)FLT_MAX && x >= -(double)FLT_MAX))
+    /* Half a step above the largest float still rounds to it. */
+    if (!(fabs(x) < 0x1.ffffffp127))
         return wrong(r, "'%.40s' is too large", value);
     if (x < 0 || signbit(x))
         return wrong(r, "'%.40s' is below 0", value);

@@ -27,6 +27,10 @@ bool hlc_calibration_write(const struct hl_caps *caps, const char *path,
                            hlc_calibration_note note, void *user,
                            struct hlh_error *error);
 
+/* Scenes that are drawn where none are named; NULL ends them. */
+extern const char *const hlc_calibration_scenes[];
+bool hlc_is_calibration_scene(const char *name);
+
 /* Value i of a file, in the file's order; NULL past the last. The key goes to
  * `key`; `unit` (may be NULL) is a static text. */
 enum { HLC_CALIBRATION_KEY = 48 };

@@ -32,7 +32,8 @@ static const struct hlc_option rows[] = {
     { "pipeline", "auto|forward|forward-multipass|inferred|reference",
       PIPELINE, R | P, 0, 0, 0, "default: the cheapest" },
     { "size", "WxH", SIZE, R | P | H | K, AT(width), 1, HLC_SIZE_MAX,
-      "pixels; default 1280x720, of chart and calibrate 640x360" },
+      "pixels; default 1280x720, of chart and calibrate 640x360, of chart "
+      "--fast 320x180" },
     { "light-size", "WxH", SIZE, R | P, AT(light_width), 1, HLC_SIZE_MAX,
       "of the light buffer; default 5/8 of the size" },
     { "samples", "1|2|4|8", SAMPLES, R | P, 0, 0, 0, "a pixel; default 1" },
@@ -311,10 +312,13 @@ int hlc_options_parse(struct hlc_options *out, int argc, char **argv)
     if (argc < 2)
         return 0;
     int code = parse_command(out, argv[1]);
-    /* Hundreds of pictures, or measured where the frame is small. */
-    if (out->command == HLC_CHART || out->command == HLC_CALIBRATE) {
+    /* Hundreds of pictures, or measured where the frame is small; of chart
+     * less still with --fast. */
+    if (out->command == HLC_CALIBRATE) {
         out->width = 640;
         out->height = 360;
+    } else if (out->command == HLC_CHART) {
+        out->width = out->height = 0;
     }
     return code ? code : parse_rest(out, argc, argv);
 }

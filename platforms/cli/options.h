@@ -41,7 +41,8 @@ struct hlc_options {
     bool validation;
 
     /* picture */
-    uint32_t width, height;  /* pixels, 1..HLC_SIZE_MAX; 1280 x 720          */
+    uint32_t width, height;  /* pixels, 1..HLC_SIZE_MAX; 1280 x 720, of
+                              * calibrate 640 x 360, of chart 0: its own     */
     uint32_t samples;        /* 1, 2, 4 or 8; 1                              */
     uint32_t supersample;    /* reference: N x N a pixel, 1..64; 0 = off     */
     double exposure;         /* EV, -64..64; 0                               */

@@ -166,9 +166,9 @@ static void print_head(FILE *out, const struct hl_plan *p)
             hlc_is_native(p) ? "" : ", profile ",
             hlc_is_native(p) ? "" : p->profile);
     fprintf(out, "predicted: %.3g ms, %.4g bytes a pixel held, %.4g moved, "
-            "light %.2g %% off, picture %.2g codes\n", (double)p->cost_ms,
+            "light %.2g %% off\n", (double)p->cost_ms,
             (double)p->bytes_per_pixel, (double)p->moved_per_pixel,
-            100.0 * (double)p->light_error, (double)p->error_codes);
+            100.0 * (double)p->light_error);
 }
 
 static void print_readers(FILE *out, uint32_t read_by)

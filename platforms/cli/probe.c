@@ -63,8 +63,6 @@ static int draw_forward(struct shown *out, struct hlc_stage *stage,
 {
     struct hlc_options p = plain(o);
     p.pipeline = HL_PIPELINE_FORWARD;
-    p.light_width = p.light_height = 0;
-    p.light_format = HL_FORMAT_NONE;
     return draw(out, stage, &p);
 }
 
@@ -106,9 +104,8 @@ static float between(const struct shown *a, const struct shown *b)
 
 enum { TRUTH, FORWARD, QUARTERS, FULL = QUARTERS + 4, EIGHT, PICTURES };
 
-/* Left out where the reference renderer cannot. */
-static void draw_truth(struct shown *out, const struct hlc_stage *stage,
-                       const struct hlc_options *o)
+void hlc_probe_truth(struct hlh_picture *out, const struct hlc_stage *stage,
+                     const struct hlc_options *o)
 {
     struct hlr_stats stats;
     struct hlr_options r = {
@@ -118,18 +115,17 @@ static void draw_truth(struct shown *out, const struct hlc_stage *stage,
         .near = o->near, .far = o->far,
         .shadows = o->shadows != HL_SHADOWS_NONE
     };
-    struct hlh_picture *p = &out->picture;
     size_t n = (size_t)o->width * o->height;
-    *p = (struct hlh_picture){ o->width, o->height,
-                               malloc(n * 3 * sizeof(float)), true };
-    if (p->rgb && !hlr_render(p->rgb, NULL, &stage->scene, &r, &stats))
-        hlh_picture_free(p);
+    *out = (struct hlh_picture){ o->width, o->height,
+                                 malloc(n * 3 * sizeof(float)), true };
+    if (out->rgb && !hlr_render(out->rgb, NULL, &stage->scene, &r, &stats))
+        hlh_picture_free(out);
 }
 
 static int draw_all(struct shown s[PICTURES], struct hlc_stage *stage,
                     const struct hlc_options *o)
 {
-    draw_truth(&s[TRUTH], stage, o);
+    hlc_probe_truth(&s[TRUTH].picture, stage, o);
     int code = draw_forward(&s[FORWARD], stage, o);
     for (uint32_t i = 1; i <= 4 && code == HLC_DONE; i++)
         code = draw_best(&s[QUARTERS + i], stage, o, i);

@@ -15,4 +15,7 @@ bool hlc_probe_wanted(const struct hlc_options *o);
  * `full` is none. An exit code: only a lost device or memory fails it. */
 int hlc_probe_measure(struct hl_probe *out, struct hlc_stage *stage,
                       const struct hlc_options *o);
+/* The truth: rgb NULL where the reference renderer cannot draw it. */
+void hlc_probe_truth(struct hlh_picture *out, const struct hlc_stage *stage,
+                     const struct hlc_options *o);
 #endif

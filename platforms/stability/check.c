@@ -82,17 +82,14 @@ static bool find(double *out, const char *text, const char *name)
 
 static bool fell(const struct hls_result *r, const char *text)
 {
-    char name[HLS_NAME], was[32] = "none", is[32] = "none";
+    char name[HLS_NAME], was[HLS_NUMBER], is[HLS_NUMBER];
     double before;
     hls_name(name, r);
     if (!measured(r) || !find(&before, text, name) || !worse(r, before))
         return false;
-    if (!isnan(before))
-        snprintf(was, sizeof was, "%.4g", before);
-    if (r->found)
-        snprintf(is, sizeof is, "%.4g", r->boundary);
-    hlc_fail(0, "stability: %s: boundary was %s, now %s %s: worse", name, was,
-             is, r->row->unit);
+    hlc_fail(0, "stability: %s: boundary was %s, now %s %s: worse", name,
+             hls_number(was, r->row, before),
+             hls_number(is, r->row, r->boundary), r->row->unit);
     return true;
 }
 

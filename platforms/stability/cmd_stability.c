@@ -7,6 +7,7 @@
 #include "platforms/cli/commands.h"
 #include "platforms/cli/json.h"
 #include "platforms/cli/outputs.h"
+#include "platforms/host/image.h"
 #include "platforms/stability/parts.h"
 
 struct run {
@@ -160,12 +161,22 @@ static int verdict(const struct run *run)
                           "where they must be", bad, run->n) : HLC_DONE;
 }
 
+static bool can_read(const char *path, struct hlh_error *error)
+{
+    char *text = NULL;
+    size_t size;
+    bool ok = !path || hlh_file_read(&text, &size, path, error);
+    free(text);
+    return ok;
+}
+
 /* Before minutes of work. */
 static int check_files(const struct hlc_options *o)
 {
     struct hlh_error error;
     if (hlc_output_check_folder(o->out, &error) &&
-        hlc_output_check(o->json, &error) && hlc_output_check(o->save, &error))
+        hlc_output_check(o->json, &error) &&
+        hlc_output_check(o->save, &error) && can_read(o->check, &error))
         return HLC_DONE;
     return hlc_fail(HLC_BAD, "%s", error.text);
 }

@@ -50,9 +50,8 @@ static void range(struct hlh_buffer *b, const struct hls_result *r, uint32_t k)
 
 static void title(struct hlh_buffer *b, const struct hls_result *r)
 {
-    char text[256], p[40] = "none";
-    if (r->found)
-        snprintf(p, sizeof p, "%.4g", r->boundary);
+    char text[256], p[HLS_NUMBER];
+    hls_number(p, r->row, r->boundary);
     snprintf(text, sizeof text, "%s: p* = %s%s", r->curve->name,
              r->skip ? "skipped" : p,
              r->verdict == HLS_MOVED ? " (moved)"
@@ -60,6 +59,7 @@ static void title(struct hlh_buffer *b, const struct hls_result *r)
     quote(b, text);
 }
 
+/* What was skipped has its place among the titles alone. */
 static void curves(struct hlh_buffer *b, const struct hls_result *r,
                    uint32_t n)
 {
@@ -67,9 +67,13 @@ static void curves(struct hlh_buffer *b, const struct hls_result *r,
     for (uint32_t k = 0; k < n; k++) {
         const char *color = colors[k % COLORS];
         hlh_buffer_print(b, "%s%.9g with lines dashtype 3 lw 1 lc rgb '%s' "
-                         "notitle, $c%u with linespoints pt 7 ps 0.3 lw 1.6 "
-                         "lc rgb '%s' title ", k ? ", " : "",
-                         r[k].curve->limit, color, k, color);
+                         "notitle, ", k ? ", " : "", r[k].curve->limit,
+                         color);
+        if (r[k].n)
+            hlh_buffer_print(b, "$c%u with linespoints pt 7 ps 0.3 lw 1.6 lc "
+                             "rgb '%s' title ", k, color);
+        else
+            hlh_buffer_print(b, "NaN with lines lc rgb '%s' title ", color);
         title(b, &r[k]);
         if (r[k].found && isfinite(r[k].at))
             hlh_buffer_print(b, ", '+' every ::0::0 using (%.9g):(%.9g) with "
@@ -100,13 +104,44 @@ static bool by_ratio(const struct hls_result *r)
            (r->row->grid == HLS_WHOLE && low > 0 && high >= 50 * low);
 }
 
+/* 1, 2 and 5 of each decade where gnuplot would mark decades alone. */
+static void ticks(struct hlh_buffer *b, double low, double high)
+{
+    static const double digits[] = { 1, 2, 5 };
+    const char *comma = "set logscale x\nset xtics (";
+    if (!(high < 500 * low)) {
+        hlh_buffer_print(b, "set logscale x\n");
+        return;
+    }
+    for (double ten = pow(10, floor(log10(low))); ten <= high; ten *= 10)
+        for (int i = 0; i < 3; i++) {
+            hlh_buffer_print(b, "%s%.6g", comma, digits[i] * ten);
+            comma = ", ";
+        }
+    hlh_buffer_print(b, ")\n");
+}
+
+/* All that is swept, and no more. */
+static void swept(struct hlh_buffer *b, const struct hls_result *r, uint32_t n)
+{
+    double low = INFINITY, high = -INFINITY;
+    for (uint32_t k = 0; k < n; k++) {
+        low = fmin(low, fmin(r[k].curve->from, r[k].curve->to));
+        high = fmax(high, fmax(r[k].curve->from, r[k].curve->to));
+    }
+    hlh_buffer_print(b, "set xrange [%.9g:%.9g]\n", low, high);
+    if (by_ratio(r))
+        ticks(b, low, high);
+}
+
 static void axes(struct hlh_buffer *b, const struct hls_result *r, uint32_t n)
 {
     char text[160];
     bool unit = r->row->unit[0] != 0;
     hlh_buffer_print(b, "set border 3\nset tics nomirror out\n"
                      "set key outside below left Left reverse noenhanced "
-                     "maxcols 2\nset grid lc rgb '#dddddd'\nset title ");
+                     "maxcols 2 height 1\nset grid lc rgb '#dddddd'\n"
+                     "set title ");
     quote(b, r->row->failure);
     snprintf(text, sizeof text, unit ? "%s (%s)" : "%s", r->row->parameter,
              r->row->unit);
@@ -115,8 +150,7 @@ static void axes(struct hlh_buffer *b, const struct hls_result *r, uint32_t n)
     hlh_buffer_print(b, " noenhanced\nset ylabel ");
     quote(b, r->row->metric);
     hlh_buffer_print(b, " noenhanced\nset offsets 0, 0, graph 0.05, 0\n");
-    if (by_ratio(r))
-        hlh_buffer_print(b, "set logscale x\n");
+    swept(b, r, n);
     if (wide(r, n))
         hlh_buffer_print(b, "set logscale y\nset format y '%%g'\n");
 }

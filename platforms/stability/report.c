@@ -21,14 +21,22 @@ void hls_name(char out[HLS_NAME], const struct hls_result *r)
 
 /* ---- text ---------------------------------------------------------------- */
 
-static void range_text(char *out, size_t size, const struct hls_case *c)
+const char *hls_number(char out[HLS_NUMBER], const struct hls_row *row,
+                       double p)
 {
-    if (isnan(c->low))
-        snprintf(out, size, "none");
-    else if (c->low == c->high)
-        snprintf(out, size, "%.4g", c->low);
-    else
-        snprintf(out, size, "%.4g..%.4g", c->low, c->high);
+    snprintf(out, HLS_NUMBER, isnan(p) ? "none" : row->grid == HLS_WHOLE
+             ? "%.0f" : "%.4g", p);
+    return out;
+}
+
+static void range_text(char *out, size_t size, const struct hls_row *row,
+                       const struct hls_case *c)
+{
+    char low[HLS_NUMBER], high[HLS_NUMBER];
+    hls_number(low, row, c->low);
+    hls_number(high, row, c->high);
+    bool two = strcmp(low, high) != 0;
+    snprintf(out, size, "%s%s%s", low, two ? ".." : "", two ? high : "");
 }
 
 void hls_print_head(void)
@@ -39,13 +47,11 @@ void hls_print_head(void)
 
 void hls_print(const struct hls_result *r)
 {
-    char name[HLS_NAME], at[32] = "-", range[48];
+    char name[HLS_NAME], at[HLS_NUMBER] = "-", range[2 * HLS_NUMBER + 2];
     hls_name(name, r);
-    if (r->found && r->verdict != HLS_BROKEN)
-        snprintf(at, sizeof at, "%.4g", r->boundary);
-    else if (r->verdict != HLS_BROKEN && !r->skip)
-        snprintf(at, sizeof at, "none");
-    range_text(range, sizeof range, r->curve);
+    if (r->verdict != HLS_BROKEN && !r->skip)
+        hls_number(at, r->row, r->boundary);
+    range_text(range, sizeof range, r->row, r->curve);
     printf("%-29s %-9s %-14s %-16s %-7s %s\n", name, at, r->row->unit, range,
            hls_verdict_name(r->verdict),
            r->skip ? r->skip

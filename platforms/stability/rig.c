@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Zlib */
 #include "platforms/stability/rig.h"
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include "platforms/cli/commands.h"
@@ -32,6 +33,21 @@ void hls_rig_wall(struct hls_rig *r, uint32_t material, double half, double z)
 {
     hlh_add_patch(&r->b, hlh_v3(-half, -half, z), hlh_v3(2 * half, 0, 0),
                   hlh_v3(0, 2 * half, 0), 1, 1);
+    hls_rig_object(r, material);
+}
+
+void hls_rig_lean(struct hls_rig *r, uint32_t material, double half, double z,
+                  double x, double y)
+{
+    double length = sqrt(x * x + y * y + 1);
+    hlh_add_patch(&r->b, hlh_v3(-half, -half, z), hlh_v3(2 * half, 0, 0),
+                  hlh_v3(0, 2 * half, 0), 1, 1);
+    for (uint32_t i = 0; !r->b.failed && i < r->b.n_vertices; i++) {
+        float *n = r->b.vertices[i].normal;
+        n[0] = (float)(x / length);
+        n[1] = (float)(y / length);
+        n[2] = (float)(1 / length);
+    }
     hls_rig_object(r, material);
 }
 

@@ -20,6 +20,9 @@ void hls_rig_begin(struct hls_rig *, double eye, double vfov);
 void hls_rig_object(struct hls_rig *, uint32_t material);
 /* A wall from -half to half on x and y at z, seen from +z, as an object. */
 void hls_rig_wall(struct hls_rig *, uint32_t material, double half, double z);
+/* The same with a shading normal that leans by x and y to 1. */
+void hls_rig_lean(struct hls_rig *, uint32_t material, double half, double z,
+                  double x, double y);
 /* Finish the scene, and *out (zeroed on failure, with a line printed) is what
  * the rig built. The rig is empty then. */
 bool hls_rig_take(struct hlh_scene *out, struct hls_rig *);

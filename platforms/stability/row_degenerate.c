@@ -159,7 +159,7 @@ static bool drawn(double *m, double share, enum kind kind,
                   struct hls_lab *lab)
 {
     struct mesh broken, good;
-    struct hlh_picture a, b = { 0, 0, NULL, true };
+    struct hlh_picture a = { 0, 0, NULL, true }, b = a;
     if (!mesh_make(&broken, CELLS))
         return false;
     break_share(&broken, share, kind);
@@ -183,8 +183,7 @@ static bool drawn(double *m, double share, enum kind kind,
     *m = 0;
     for (uint32_t i = 0; ok && i < a.width * a.height; i++)
         *m += memcmp(a.rgb + 3 * i, b.rgb + 3 * i, sizeof(float[3])) != 0;
-    if (a.rgb)
-        hlh_picture_free(&a);
+    free(a.rgb);
     free(b.rgb);
     mesh_free(&broken);
     mesh_free(&good);

@@ -173,6 +173,6 @@ static const struct hls_case cases[] = {
 
 const struct hls_row hls_row_half_pixel = {
     "half_pixel", "Light is read half a pixel beside its surface",
-    "12, K 5.1", "offset", "pixels", "shift found (pixels, codes)",
+    "K 5.1", "offset", "pixels", "shift found (pixels, codes)",
     HLS_LINEAR, cases, sizeof cases / sizeof *cases, open, NULL, measure
 };

@@ -178,7 +178,7 @@ static bool swap(struct own *w, enum hlc_ids_scheme scheme, uint32_t n,
     return hls_rig_swap(&w->shot, &rig, &o);
 }
 
-static void rename(struct own *w, uint32_t n, bool random, uint32_t seed)
+static void name_by_bytes(struct own *w, uint32_t n, bool random, uint32_t seed)
 {
     struct hl_item *item = w->shot.stage->world.items;
     for (uint32_t i = 0; i < n; i++) {
@@ -222,7 +222,7 @@ static bool measure(double *m, double p, const struct hls_case *c,
         return false;
     for (uint32_t i = 0; i < looks; i++) {
         if (naming == SEQUENCE || naming == SEEDS)
-            rename(w, n, naming == SEEDS, i + 1);
+            name_by_bytes(w, n, naming == SEEDS, i + 1);
         if (!look(w))
             return false;
         count(w, &edges, &shared);

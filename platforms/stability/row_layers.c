@@ -36,7 +36,9 @@ static void build(struct hls_rig *rig, int panes, double half)
         struct hlh_material *pane = hlh_build_last_material(&rig->b);
         pane->base_color[3] = 0.3f;
         pane->alpha = HLH_ALPHA_BLEND;
-        hls_rig_wall(rig, m, half, 0.005 * (i + 1));
+        /* Light that got to another layer shows. */
+        hls_rig_lean(rig, m, half, 0.005 * (i + 1), 0.6 * (i % 3 - 1),
+                     0.6 * (i / 3 % 3 - 1));
     }
     hlh_build_light(&rig->b, hlh_v3(0.2, 0.3, 0.6), 1.8, hlh_v3(1, 0.9, 0.8));
     hlh_build_light(&rig->b, hlh_v3(-0.4, -0.2, 0.8), 1.6,

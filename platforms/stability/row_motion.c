@@ -185,7 +185,7 @@ static const struct hls_case widths[] = {
 
 const struct hls_row hls_row_motion = {
     "motion", "What is thinner than an L-buffer texel flickers as it moves",
-    "3, K 3", "width", "pixels", "flicker F at 1/16 pixel a frame",
+    "2, K 3", "width", "pixels", "flicker F at 1/16 pixel a frame",
     HLS_LOG, widths, sizeof widths / sizeof *widths, NULL, NULL, at_width
 };
 
@@ -199,7 +199,7 @@ static const struct hls_case speeds[] = {
 };
 
 const struct hls_row hls_row_speed = {
-    "speed", "Flicker grows with speed, not with thinness", "3, K 3", "speed",
+    "speed", "Flicker grows with speed, not with thinness", "2, K 3", "speed",
     "pixels a frame", "flicker F", HLS_LOG, speeds,
     sizeof speeds / sizeof *speeds, NULL, NULL, at_speed
 };

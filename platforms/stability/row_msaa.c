@@ -160,6 +160,6 @@ static const struct hls_case cases[] = {
 
 const struct hls_row hls_row_msaa = {
     "msaa", "Edges keep errors that more samples do not mend",
-    "14, K 3", "samples", "a pixel", "mean error of edge pixels", HLS_WHOLE,
+    "3, K 3", "samples", "a pixel", "mean error of edge pixels", HLS_WHOLE,
     cases, sizeof cases / sizeof *cases, open, close, measure
 };

@@ -67,6 +67,12 @@ static uint32_t scaled(uint32_t n, double ratio)
     return x ? x : 1;
 }
 
+/* Pixels an L texel, rounded up. */
+static uint32_t texel(uint32_t n, uint32_t light)
+{
+    return (n + light - 1) / light;
+}
+
 /* Least and greatest of channel k of the reference within rx, ry pixels. */
 static void range_about(double range[2], const struct hlh_picture *r,
                         uint32_t x, uint32_t y, uint32_t rx, uint32_t ry,
@@ -132,8 +138,9 @@ static bool one(double *m, uint32_t w, uint32_t h, double ratio,
     if (ok) {
         ok = hls_rig_picture(&p, &shot);
         if (ok) {
-            double e = excess(&p, &r, w / o.light_width + 1,
-                              h / o.light_height + 1) / rounded(&shot.plan);
+            double e = excess(&p, &r, texel(w, o.light_width),
+                              texel(h, o.light_height)) /
+                       rounded(&shot.plan);
             *m = e > *m ? e : *m;
             hlh_picture_free(&p);
         }

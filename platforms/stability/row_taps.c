@@ -111,6 +111,6 @@ static const struct hls_case cases[] = {
 
 const struct hls_row hls_row_taps = {
     "taps", "All four taps rejected on what is thinner than an L-buffer texel",
-    "2, K 3.2", "width", "texels", "share of pixels without a tap",
+    "2, K 3", "width", "texels", "share of pixels without a tap",
     HLS_LINEAR, cases, sizeof cases / sizeof *cases, open, NULL, measure
 };

@@ -9,8 +9,8 @@
 #define PI 3.14159265358979323846
 #define DEPTH 10.0               /* of what is looked at, metres             */
 
-enum { DSF, TAU, HEIGHT };       /* hls_case.arg; HEIGHT: L texels at 60     *
-                                  * degrees                                  */
+enum { TAU, HEIGHT };            /* hls_case.arg: constant threshold, 0 = as
+                                  * asked; L texels of a view of 60 degrees  */
 
 static struct hlh_v3 v3(double x, double y, double z)
 {
@@ -114,11 +114,11 @@ static bool tilt(double *m, double p, const struct hls_case *c,
     { name, "constant, H_L " #height, angle - 20, angle + 5, 0.01, false, \
       angle - 0.5, angle + 0.5 + 0.25, \
       "atan(tau / (p (1 + tau))) = " #angle " degrees", \
-      { HL_DSF_CONSTANT_TAU, tau, height } }
+      { tau, height } }
 #define LEVEL(name, height) \
     { name, "by slope, H_L " #height, 1, 88, 0.01, false, NAN, NAN, \
       "threshold grows with the slope: never to 88 degrees", \
-      { HL_DSF_AUTO, 0, height } }
+      { 0, height } }
 
 static const struct hls_case tilts[] = {
     TILT("tau_0.2_225", 0.002, 225, 21.3),
@@ -132,7 +132,7 @@ static const struct hls_case tilts[] = {
 
 const struct hls_row hls_row_tilt = {
     "tilt", "A constant threshold rejects a tilted plane's own taps",
-    "1, K 3", "tilt", "degrees", "share of pixels with a rejected tap",
+    "K 3", "tilt", "degrees", "share of pixels with a rejected tap",
     HLS_LINEAR, tilts, sizeof tilts / sizeof *tilts, open, NULL, tilt
 };
 
@@ -184,16 +184,49 @@ static bool gap(double *m, double p, const struct hls_case *c,
  * downwards. By slope: q more, of planes that are not tilted. */
 static const struct hls_case gaps[] = {
     { "tau_1", "constant, 1 %", 0.1, 1e-4, 0.01, false, 0.00999, 0.01014,
-      "tau / (1 - tau) = 0.0101", { HL_DSF_CONSTANT_TAU, 0.01 } },
+      "tau / (1 - tau) = 0.0101", { 0.01 } },
     { "tau_0.1", "constant, 0.1 %", 0.1, 1e-4, 0.01, false, 0.000973, 0.00102,
-      "tau / (1 - tau) = 0.001", { HL_DSF_CONSTANT_TAU, 0.001 } },
+      "tau / (1 - tau) = 0.001", { 0.001 } },
     { "slope", "by slope, c = 0.1 %", 0.1, 1e-4, 0.01, false, 0.000988,
-      0.001034, "c + q = 0.00102", { HL_DSF_AUTO, 0 } },
+      0.001034, "c + q = 0.00102", { 0 } },
+};
+
+/* ---- tau ----------------------------------------------------------------- */
+
+#define TILT_OF 75.5             /* degrees                                  */
+#define GAP_OF 0.01              /* of depth                                 */
+
+/* p: the threshold, of the case's one surface. */
+static bool tau(double *m, double p, const struct hls_case *c,
+                struct hls_lab *lab)
+{
+    struct hls_case with = *c;
+    with.arg[TAU] = p;
+    return c->arg[HEIGHT] > 0 ? tilt(m, TILT_OF, &with, lab)
+                              : gap(m, GAP_OF, &with, lab);
+}
+
+/* What a plane of 75.5 degrees needs at H_L 450 is what a gap of 1 % must not
+ * have: no constant serves both, and by slope both hold (rows tilt and gap).
+ * Half a degree is 3.6 % of the tangent. Far pixels leak first, at 1 / 1.01 of
+ * the gap; both depths are rounded by q / 2, and bisection adds 1 %. */
+static const struct hls_case taus[] = {
+    { "kept", "rejects of a plane of 75.5 degrees, H_L 450", 1e-4, 0.1, 0.01,
+      true, 0.0096, 0.0105, "p tan / (1 - p tan) = 0.01",
+      { 0, 450 } },
+    { "leak", "leaks over a gap of 1 %", 1e-4, 0.1, 0.01, false, 0.0098,
+      0.0101, "gap / (1 + gap) = 0.0099", { 0 } },
+};
+
+const struct hls_row hls_row_tau = {
+    "tau", "No constant threshold keeps tilted planes and tells near ones",
+    "K 3", "threshold", "of depth", "share rejected, or leaked", HLS_LOG,
+    taus, sizeof taus / sizeof *taus, open, NULL, tau
 };
 
 const struct hls_row hls_row_gap = {
     "gap", "Light leaks between surfaces of one id that are near in depth",
-    "5, K 3", "gap", "of depth", "share of edge pixels that take both sides",
+    "4, K 3.1", "gap", "of depth", "share of edge pixels that take both sides",
     HLS_LOG, gaps, sizeof gaps / sizeof *gaps, open, NULL, gap
 };
 
@@ -227,15 +260,15 @@ static bool own(double *m, double p, const struct hls_case *c,
  * 7.63 m. The plane's own slope adds a sixteenth of a step a texel. */
 static const struct hls_case selves[] = {
     { "tau_0.1", "constant, 0.1 %", 100, 1, 0.01, false, 7.4, 8.6,
-      "q / 2 = tau z at 7.63 m", { HL_DSF_CONSTANT_TAU, 0.001 } },
+      "q / 2 = tau z at 7.63 m", { 0.001 } },
     { "tau_1", "constant, 1 %", 100, 0.1, 0.01, false, 0.74, 0.86,
-      "q / 2 = tau z at 0.763 m", { HL_DSF_CONSTANT_TAU, 0.01 } },
+      "q / 2 = tau z at 0.763 m", { 0.01 } },
     { "slope", "by slope", 100, 0.1, 0.01, false, NAN, NAN,
-      "the threshold begins at q: never", { HL_DSF_AUTO, 0 } },
+      "the threshold begins at q: never", { 0 } },
 };
 
 const struct hls_row hls_row_self = {
     "self", "A threshold below the step of stored depth rejects all taps",
-    "1, K 3", "distance", "m", "share of pixels with a rejected tap", HLS_LOG,
+    "K 3", "distance", "m", "share of pixels with a rejected tap", HLS_LOG,
     selves, sizeof selves / sizeof *selves, open, NULL, own
 };
