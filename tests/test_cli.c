@@ -15,7 +15,7 @@ static void bad_usage_is_exit_two(void **state)
     static const struct tool_line rows[] = {
         { "bogus", "bogus: no such command" },
         { "bo\ngus", "bo gus: no such command" },
-        { "chart thin", "chart: no such command" },
+        { "paint thin", "paint: no such command" },
         { "--out x render", "--out: the command comes first" },
         { "help bogus", "help bogus: no such command" },
         { "render", "render: needs SCENE" },
@@ -27,6 +27,10 @@ static void bad_usage_is_exit_two(void **state)
         { "render thin -q", "-q: unknown option" },
         { "compare a b --samples 4", "--samples: not an option of compare" },
         { "plan thin --out x", "--out: not an option of plan" },
+        { "chart thin --machines amiga", "amiga" },
+        { "stability thin", "thin: stability takes no further argument" },
+        { "stability --only bogus", "bogus" },
+        { "calibrate --rounds 3", "--rounds: not an option of calibrate" },
         { "render thin --validation=1", "--validation=1: takes no value" },
         { "render thin --size", "--size: needs a value: WxH" },
         { "render thin --out --hdr x", "--out: needs a value" },
@@ -87,6 +91,10 @@ static void bad_values_are_exit_two(void **state)
         { "render thin --lights-mode mix", "must be one of add|replace" },
         { "render thin --light-format RGB", "no such format" },
         { "render thin --light-format NONE", "no such format" },
+        { "render thin --normal-format RG9", "no such format" },
+        { "render thin --max-error 0", "must be a number from 0.001" },
+        { "render thin --max-cost 0", "must be a number from 1e-06" },
+        { "chart thin --rounds 5000", "from 0 to 1000" },
         { "render thin --light-batch 17", "from 1 to 16" },
         { "render thin --tile 7", "from 8 to 256" },
         { "render thin --dsf on", "must be one of auto|off|" },
@@ -151,7 +159,7 @@ static void asking_for_help_is_no_error(void **state)
         assert_int_equal(strstr(r.out, "halflight conform") != NULL, i < 4);
     }
     tool_done(&r, state, "--version");
-    sk_assert_contains(r.out, "halflight 2");
+    sk_assert_contains(r.out, "halflight 3");
     assert_int_equal(sk_count(state), 0);
 }
 

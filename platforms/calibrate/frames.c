@@ -96,9 +96,11 @@ static int open_place(struct place *p)
 {
     struct hlc_options counter = *p->o;
     char line[HLC_PLAN_LINE];
-    counter.backend = "packemu";
-    counter.profile = counter.device = NULL;
     int code = open_stage(&p->stage, p->o);
+    /* A console's formats are packemu's alone. */
+    if (strcmp(p->units->backend, "packemu"))
+        counter.profile = counter.device = NULL;
+    counter.backend = "packemu";
     if (code == HLC_DONE)
         code = open_stage(&p->counter, &counter);
     for (int way = 0; way < HLK_WAYS && code == HLC_DONE; way++) {

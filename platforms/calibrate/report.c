@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Zlib */
 #include "platforms/calibrate/report.h"
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -23,6 +24,14 @@ static void add_line(struct hlk_notes *n, const char *format, ...)
     va_end(args);
 }
 
+static void add_figure(struct hlk_notes *n, const char *before, double x)
+{
+    if (isfinite(x))
+        add_line(n, "%s%.2f", before, x);
+    else
+        add_line(n, "%s-", before);
+}
+
 void hlk_head(struct hlk_work *w)
 {
     struct hlk_notes *n = &w->notes;
@@ -35,12 +44,15 @@ void hlk_head(struct hlk_work *w)
              "of plans by the same.\n");
     for (uint32_t i = 0; i < w->o.n_args; i++) {
         const struct hlk_frames *f = &w->frames[i];
-        add_line(n, "  %-12.40s %.3f (%.3f..%.3f)  %.2f %.2f  %.2f %.2f\n",
-                 f->scene, f->ratio.median, f->ratio.low, f->ratio.high,
-                 hlk_agreement(f, f->counted, HLK_BUILT_IN),
-                 hlk_agreement(f, f->counted, HLK_MEASURED),
-                 hlk_agreement(f, f->planned, HLK_BUILT_IN),
-                 hlk_agreement(f, f->planned, HLK_MEASURED));
+        add_line(n, "  %-12.40s ", f->scene);
+        if (isfinite(f->ratio.median))
+            add_line(n, "%.3f (%.3f..%.3f)", f->ratio.median, f->ratio.low,
+                     f->ratio.high);
+        for (int c = 0; c < HLK_COSTS; c++)
+            add_figure(n, c ? " " : "  ", hlk_agreement(f, f->counted, c));
+        for (int c = 0; c < HLK_COSTS; c++)
+            add_figure(n, c ? " " : "  ", hlk_agreement(f, f->planned, c));
+        add_line(n, "\n");
     }
 }
 

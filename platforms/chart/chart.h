@@ -2,10 +2,11 @@
 #ifndef HLT_CHART_H
 #define HLT_CHART_H
 /* Error over cost of every way to draw a scene. Reading order: ways.c (what is
- * tried), sweep.c (each drawn, counted, timed and compared), table.c (the CSV,
- * which an unfinished sweep is gone on with), front.c (which ways no other
- * beats, and the area they take), plot.c (pictures of it), check.c (what
- * became worse), cmd_chart.c. */
+ * tried), sweep.c (all of them), point.c (one drawn, compared with refs.c,
+ * counted by count.c, timed by time.c), table.c (the CSV, which an unfinished
+ * sweep is gone on with; a finished one is replaced), front.c (which ways no
+ * other beats, and the area they take), plot.c (pictures of it), check.c (what
+ * became worse), report.c, cmd_chart.c. */
 #include "platforms/cli/options.h"
 #include "platforms/host/scene.h"
 
