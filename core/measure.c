@@ -87,6 +87,7 @@ static double shared_area(const struct shape *s, const struct hl_rect *r)
 struct further {
     double draws, triangles, fragments, area; /* beyond an object's first    */
     double pairs, pair_triangles, pair_area;  /* one a light and object      */
+    double lights;               /* of all objects, blended ones too         */
 };
 
 /* Lights that forward shading of an item takes. */
@@ -127,7 +128,7 @@ static void add_further(struct further *w, const struct hl_item *it,
 static void measure_items(struct hl_needs *n, const struct hl_frame *f,
                           const struct hl_surface *surfaces, float aspect)
 {
-    struct further w = { 0, 0, 0, 0, 0, 0, 0 };
+    struct further w = { 0, 0, 0, 0, 0, 0, 0, 0 };
     const struct hl_span span =
         hl_span_whole(GRID, (uint32_t)(GRID / aspect) + 1, &f->camera,
                       aspect);
@@ -146,20 +147,27 @@ static void measure_items(struct hl_needs *n, const struct hl_frame *f,
             continue;
         seen++;
         struct shape shape = { 0, 0, 0, 0, 0 };
-        shape_of(&shape, it, &f->camera, &span);
-        add_further(&w, it, lights_on(&w, f, &b, &shape, &span, aspect),
-                    shape.area);
+        /* What blends has all its lights in one draw: no further area. */
+        bool once = surfaces[it->surface].blended ||
+                    surfaces[it->surface].decal;
+        if (!once)
+            shape_of(&shape, it, &f->camera, &span);
+        uint32_t lights = lights_on(&w, f, &b, &shape, &span, aspect);
+        w.lights += lights;
+        if (!once)
+            add_further(&w, it, lights, shape.area);
     }
     n->further_draws = (float)w.draws;
     n->further_triangles = (float)w.triangles;
     n->further_cover = (float)(w.area > 0 ? w.fragments / w.area : 0);
     n->pair_triangles = (float)w.pair_triangles;
     n->pair_cover = (float)(w.pair_area / screen);
-    n->lights_per_object = seen ? (float)(w.pairs / seen) : 0.0f;
+    n->pair_draws = (float)w.pairs;
+    n->lights_per_object = seen ? (float)(w.lights / seen) : 0.0f;
 }
 
-/* Translucent items over one point, by the outlines of their boxes as
- * patterns are assigned: on a grid of points, so that an object between four
+/* Items over one point, by the outlines of their boxes as patterns are
+ * assigned: on a grid of points, so that an object between four
  * of them counts at its centre alone. */
 enum { LAYERS_X = 128, LAYERS_Y = 72 };
 
@@ -212,27 +220,40 @@ static void add_layer(uint8_t *cell, const struct hl_stipple_outline *o)
         cover(cell, at, at + 1, cell_at(y, LAYERS_Y - 1));
 }
 
-static void measure_layers(struct hl_needs *n, const struct hl_frame *f,
-                           const struct hl_surface *surfaces, float aspect)
+/* Layers of what is blended, or of what is not. */
+static void add_layers(uint8_t cell[LAYERS_X * LAYERS_Y],
+                       const struct hl_frame *f,
+                       const struct hl_surface *surfaces, bool blended,
+                       float aspect)
 {
-    uint8_t cell[LAYERS_X * LAYERS_Y];
     struct hl_span span = hl_span_whole(LAYERS_X, LAYERS_Y, &f->camera,
                                         aspect);
     struct hl_stipple_outline o;
-    n->blended_layers = 0;
-    if (!n->blended)
-        return;
-    memset(cell, 0, sizeof cell);
+    memset(cell, 0, LAYERS_X * LAYERS_Y);
     for (uint32_t i = 0; i < f->n_items; i++) {
         const struct hl_item *it = &f->items[i];
-        if (surfaces[it->surface].blended &&
+        if (surfaces[it->surface].blended == blended &&
             hl_stipple_project(&o, it->world, it->bounds_min, it->bounds_max,
                                &f->camera, &span))
             add_layer(cell, &o);
     }
-    for (int i = 0; i < LAYERS_X * LAYERS_Y; i++)
+}
+
+static void measure_layers(struct hl_needs *n, const struct hl_frame *f,
+                           const struct hl_surface *surfaces, float aspect)
+{
+    uint8_t cell[LAYERS_X * LAYERS_Y];
+    uint32_t covered = 0;
+    n->blended_layers = 0;
+    if (n->blended)
+        add_layers(cell, f, surfaces, true, aspect);
+    for (int i = 0; i < LAYERS_X * LAYERS_Y && n->blended; i++)
         n->blended_layers = cell[i] > n->blended_layers ? cell[i]
                                                         : n->blended_layers;
+    add_layers(cell, f, surfaces, false, aspect);
+    for (int i = 0; i < LAYERS_X * LAYERS_Y; i++)
+        covered += cell[i] > 0;
+    n->cover = (float)(covered ? covered : 1) / (LAYERS_X * LAYERS_Y);
 }
 
 /* Exponents of what is drawn forward are no channel's, but its highlights are

@@ -123,11 +123,13 @@ struct hl_needs {
     float lights_per_pixel;        /* mean over the screen, by light bounds  */
     float lights_per_object;       /* mean lights that touch an object       */
     /* Forward draws of eight lights beyond an object's first: how many, their
-     * triangles, and their fragments a frame pixel; and the triangles and
-     * fragments of one draw a light and object. 0: estimated from the means
-     * above. */
+     * triangles, and their fragments a covered pixel; and the number, the
+     * triangles and the fragments a frame pixel of one draw a light and
+     * object. Of opaque objects alone; 0: estimated from the means above. */
     float further_draws, further_triangles, further_cover;
-    float pair_triangles, pair_cover;
+    float pair_draws, pair_triangles, pair_cover;
+    float cover;                   /* share of the screen before which opaque
+                                    * objects' boxes lie, 0..1; 0 = 1        */
     uint32_t n_regions;            /* object regions: sum of normal groups   */
     uint32_t lights;               /* HL_LIGHTS_*; 0 = SMOOTH                */
     enum hl_specular_need specular;

@@ -9,6 +9,8 @@
 /* Fragments a pixel that a pass shades whose draws are sorted front to back
  * and by surface: 0.90 to 1.05 in the built-in scenes, counted. */
 #define HL_OVERDRAW 1.05
+/* The same over all pixels, those of the background too. */
+#define hl_plan_overdraw(ask) (HL_OVERDRAW * (double)(ask)->n.cover)
 
 struct hl_ask {
     struct hl_needs n;

@@ -31,7 +31,7 @@ static double base_cost(const struct hl_ask *ask, double lights)
     const struct hl_cost_model *c = &ask->caps->cost;
     return (double)ask->n.n_objects * (double)c->draw_ns +
            (double)ask->n.n_triangles * (double)c->vertex_ns +
-           HL_OVERDRAW * hl_plan_shaded_pixels(ask) *
+           hl_plan_overdraw(ask) * hl_plan_shaded_pixels(ask) *
            ((double)c->pixel_ns + lights * (double)c->light_ns);
 }
 
@@ -94,7 +94,8 @@ enum hl_refusal hl_plan_forward(struct hl_plan *p, const struct hl_ask *ask)
                                           extra * objects),
                                known(ask->n.further_triangles,
                                      extra * triangles),
-                               known(ask->n.further_cover, extra), batch);
+                               known(ask->n.further_cover, extra) *
+                               (double)ask->n.cover, batch);
     return finish(p, ask, 1.0 + extra, cost);
 }
 
@@ -117,11 +118,13 @@ enum hl_refusal hl_plan_multipass(struct hl_plan *p, const struct hl_ask *ask)
     forward_pass(p, 1);
     double per_object = (double)ask->per_object;
     /* Scissored: no more than the lights' rectangles. */
-    double cover = known(ask->n.pair_cover, per_object);
+    double cover = known(ask->n.pair_cover,
+                         per_object * (double)ask->n.cover);
     if (p->scissor && cover > (double)ask->per_pixel)
         cover = (double)ask->per_pixel;
     double cost = base_cost(ask, 0) +
-                  further_cost(ask, per_object * ask->n.n_objects,
+                  further_cost(ask, known(ask->n.pair_draws,
+                                          per_object * ask->n.n_objects),
                                known(ask->n.pair_triangles,
                                      per_object * ask->n.n_triangles),
                                cover, 1);

@@ -183,9 +183,9 @@ static double geometry_cost(const struct hl_plan *p, const struct hl_ask *ask)
     double frame = hl_plan_shaded_pixels(ask);
     return 2.0 * ask->n.n_objects * (double)c->draw_ns +
            2.0 * ask->n.n_triangles * (double)c->vertex_ns +
-           HL_OVERDRAW * light * (double)c->pixel_ns * 2 +
+           hl_plan_overdraw(ask) * light * (double)c->pixel_ns * 2 +
            light * pairs_cost(p, c) +
-           HL_OVERDRAW * frame *
+           hl_plan_overdraw(ask) * frame *
            ((double)c->pixel_ns + dsf * (double)c->fetch_ns + taps * fetch);
 }
 
@@ -283,7 +283,7 @@ static double dark_cost(const struct hl_ask *ask)
     const struct hl_cost_model *c = &ask->caps->cost;
     return ask->n.n_objects * (double)c->draw_ns +
            ask->n.n_triangles * (double)c->vertex_ns +
-           HL_OVERDRAW * hl_plan_shaded_pixels(ask) * (double)c->pixel_ns;
+           hl_plan_overdraw(ask) * hl_plan_shaded_pixels(ask) * (double)c->pixel_ns;
 }
 
 static enum hl_refusal plan_dark(struct hl_plan *p, const struct hl_ask *lit)

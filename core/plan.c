@@ -250,7 +250,9 @@ static enum hl_refusal check(const struct hl_needs *n,
         !good(n->further_draws, 0, 1e12f) ||
         !good(n->further_triangles, 0, 1e15f) ||
         !good(n->further_cover, 0, 1e9f) ||
+        !good(n->pair_draws, 0, 1e12f) ||
         !good(n->pair_triangles, 0, 1e15f) ||
+        !good(n->cover, 0, 1) ||
         !good(n->pair_cover, 0, 1e9f) || !good(n->far, 0, 1e9f) ||
         !good(n->dsf_k, 0, 1e3f) || !good(n->dsf_c, 0, 1) ||
         !good(n->dsf_tau, 0, 1) || !good(n->peak, 0, 1e30f) ||
@@ -266,6 +268,7 @@ static void fill(struct hl_ask *ask)
     struct hl_needs *n = &ask->n;
     n->samples = n->samples ? n->samples : 1;
     n->far = n->far > 0 ? n->far : 1000.0f;
+    n->cover = n->cover > 0 ? n->cover : 1.0f;
     n->max_error = n->max_error > 0 ? n->max_error : 1.0f;
     n->exponent = n->exponent >= 1 ? n->exponent : 1.0f;
     n->n_objects = n->n_objects ? n->n_objects : 1;

@@ -94,6 +94,8 @@ static struct hl_needs some_needs(struct fz *f, bool wild)
     n.n_lights = fz_count(f);
     n.lights_per_pixel = real(f, wild, 1000);
     n.lights_per_object = real(f, wild, 1000);
+    n.cover = fz_bool(f) ? 0 : real(f, wild, 1);
+    n.pair_draws = fz_bool(f) ? 0 : real(f, wild, 1e6f);
     n.n_regions = fz_count(f);
     n.lights = choice(f, wild, 8);
     n.specular = (enum hl_specular_need)choice(f, wild, 3);

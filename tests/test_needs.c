@@ -102,6 +102,54 @@ static void choices_are_left_alone(void **state)
     assert_int_equal(n->light_format, before.light_format);
 }
 
+static void in_limits(double x, double low, double high)
+{
+    if (!(x >= low && x <= high))
+        fail_msg("%g is not in %g to %g", x, low, high);
+}
+
+/* A wall of 8 x 4 m, 20 m away, sides seen edge-on: the view there is 20 m
+ * high, of the box's front, 19 m away, 19. Outlines are known to a cell of
+ * 128 x 72 on either side: (w / 33.8 +- 1 / 64) (h / 19 +- 1 / 36). */
+static void cover_is_what_boxes_hide(void **state)
+{
+    (void)state;
+    struct small s;
+    make(&s);
+    s.frame.n_items = 1;
+    s.item[0].world[12] = 0;
+    s.item[0].world[0] = 4;
+    s.item[0].world[5] = 2;
+    double w = 8 / (19 * 16.0 / 9), h = 4 / 19.0;
+    double cover = (double)measure(&s)->cover;
+    in_limits(cover, (w - 1.0 / 64) * (h - 1.0 / 36),
+                     (w + 1.0 / 64) * (h + 1.0 / 36));
+    /* The same behind it hides no more; beside it, twice as much. */
+    s.frame.n_items = 2;
+    s.item[1] = s.item[0];
+    assert_true((double)measure(&s)->cover == cover);
+    s.item[1].world[12] = 10;
+    in_limits((double)measure(&s)->cover, cover * 1.6, cover * 2.4);
+    /* What is blended hides nothing, and nothing is not unknown. */
+    s.item[0].surface = s.item[1].surface = 1;
+    in_limits((double)measure(&s)->cover, 1e-9, 1e-3);
+}
+
+/* Blended objects have all their lights in one draw. */
+static void pairs_are_of_what_is_opaque(void **state)
+{
+    (void)state;
+    struct small s;
+    make(&s);
+    add_light(&s, 0, -20, 100);
+    add_light(&s, 1, -20, 100);
+    assert_true((double)measure(&s)->pair_draws == 2.0 * ITEMS);
+    s.item[2].surface = 1;
+    assert_true((double)measure(&s)->pair_draws == 2.0 * (ITEMS - 1));
+    assert_true((double)s.needs.pair_triangles == 24.0 * (ITEMS - 1));
+    assert_true((double)s.needs.lights_per_object == 2);
+}
+
 static void kinds_of_light_are_collected(void **state)
 {
     (void)state;
@@ -268,6 +316,8 @@ int main(void)
         cmocka_unit_test(decals_are_seen),
         cmocka_unit_test(counts_are_the_frames),
         cmocka_unit_test(choices_are_left_alone),
+        cmocka_unit_test(cover_is_what_boxes_hide),
+        cmocka_unit_test(pairs_are_of_what_is_opaque),
         cmocka_unit_test(kinds_of_light_are_collected),
         cmocka_unit_test(lights_an_object_are_those_that_touch_it),
         cmocka_unit_test(lights_a_pixel_are_their_outlines),

@@ -446,6 +446,8 @@ static void each_bad_need_is_named(void **state)
     for (int i = 0; i < 3; i++) {
         REFUSED(lights_per_pixel, bad[i], HL_REFUSED_VALUE);
         REFUSED(lights_per_object, bad[i], HL_REFUSED_VALUE);
+        REFUSED(pair_draws, bad[i], HL_REFUSED_VALUE);
+        REFUSED(cover, bad[i], HL_REFUSED_VALUE);
         REFUSED(far, bad[i], HL_REFUSED_VALUE);
         REFUSED(peak, bad[i], HL_REFUSED_VALUE);
         REFUSED(max_error, bad[i], HL_REFUSED_VALUE);

@@ -3,17 +3,17 @@
 #define HLK_CALIBRATE_H
 /* `halflight calibrate`: what the planner predicts by, measured. Reading
  * order: plane.c (two scenes made for measuring), rounds.c (frames timed in
- * turn), units.c and
- * readback.c (each unit cost by differences of them), frames.c (how well
- * whole frames of scenes come out by them), errors.c (what the size and format
- * of the L-buffer cost in accuracy), report.c, cmd_calibrate.c. */
+ * turn), units.c and readback.c (each unit cost by differences of them),
+ * frames.c (how well whole frames of scenes come out by them), errors.c (what
+ * size and format of the L-buffer cost in accuracy), report.c, cmd_calibrate.c.
+ */
 #include "platforms/cli/calibration.h"
 #include "platforms/cli/shot.h"
 
 /* ---- plane.c ------------------------------------------------------------ */
 
-/* A wall that fills the view of a picture of this aspect, and 64
- * lights before it whose rectangles cover all of that. */
+/* A wall that fills the view of a picture of this aspect, and 64 lights before
+ * it whose rectangles cover all of that. */
 bool hlk_plane(struct hlh_scene *out, double aspect, struct hlh_error *error);
 /* 400 boxes of a pixel or two, 12 cuts^2 triangles each, no lights. */
 enum { HLK_DUST = 400 };
@@ -21,7 +21,7 @@ bool hlk_dust(struct hlh_scene *out, uint32_t cuts, struct hlh_error *error);
 
 /* ---- rounds.c ----------------------------------------------------------- */
 
-enum { HLK_FRAMES = 64, HLK_ROUNDS = 31 };
+enum { HLK_ROUNDS = 31 };        /* at most                                  */
 
 struct hlk_frame {
     struct hlc_shot shot;        /* not open: renderer NULL, times NAN       */
@@ -31,7 +31,6 @@ struct hlk_frame {
  * not counted; `busy`: this process's processor time in place of the clock's.
  * False: the device failed. */
 bool hlk_time(struct hlk_frame *frame, uint32_t n, uint32_t rounds, bool busy);
-double hlk_busy_ms(void);
 
 /* Median and quartiles; n of them were finite. */
 struct hlk_value { double median, low, high; uint32_t n; };

@@ -9,7 +9,7 @@
 
 /* ---- times -------------------------------------------------------------- */
 
-double hlk_busy_ms(void)
+static double busy_ms(void)
 {
     struct timespec t;
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
@@ -20,10 +20,10 @@ double hlk_busy_ms(void)
  * runs on the machine does not come into it. */
 static bool draw(struct hlk_frame *f, bool busy, double *ms)
 {
-    double start = hlk_busy_ms();
+    double start = busy_ms();
     bool ok = hlc_shot_draw(&f->shot, ms) == HL_OK;
     if (busy)
-        *ms = hlk_busy_ms() - start;
+        *ms = busy_ms() - start;
     return ok;
 }
 

@@ -73,6 +73,7 @@ static void add_needs(cJSON *tree, const struct hl_needs *n)
     hlc_json_uint(j, "lights", n->n_lights);
     hlc_json_real(j, "lights_per_pixel", (double)n->lights_per_pixel, 6);
     hlc_json_real(j, "lights_per_object", (double)n->lights_per_object, 6);
+    hlc_json_real(j, "cover", (double)n->cover, 6);
     hlc_json_uint(j, "regions", n->n_regions);
     cJSON_AddStringToObject(j, "falloff", hlc_falloff_name(n->lights & 3u));
     cJSON_AddBoolToObject(j, "cones", (n->lights & HL_LIGHTS_CONES) != 0);
