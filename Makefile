@@ -205,6 +205,8 @@ bench: all $(B)/tests/bench_growth $(B)/tests/bench_light $(B)/tests/bench_stipp
 	@$(B)/tests/bench_stipple
 docs: tool $(B)/docs-tables
 	@sh docs/make-tables.sh $(B)/halflight $(B)/docs-tables
+	@sh docs/make-stability.sh $(B)/halflight
+	@sh docs/make-charts.sh $(B)/halflight
 $(B)/docs-tables: $(B)/obj/docs/tables.o
 	@echo "  LINK $@"
 	$(Q)$(CC) $(ALL_LDFLAGS) -o $@ $^ -lcjson

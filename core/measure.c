@@ -178,10 +178,11 @@ static void cover(uint8_t *cell, int32_t x0, int32_t x1, int32_t y)
             (*c)++;
 }
 
-/* Cell of a coordinate, within 0..most. */
+/* Cell of a coordinate, within 0..most; NaN, of a transform that the frame
+ * will be refused for, is 0. */
 static int32_t cell_at(float x, int32_t most)
 {
-    return x <= 0 ? 0 : x >= (float)most ? most : (int32_t)x;
+    return !(x > 0) ? 0 : x >= (float)most ? most : (int32_t)x;
 }
 
 /* Points of row y that lie in the outline: x0 <= x < x1. */

@@ -21,7 +21,8 @@ if [ -z "${HL_CHART_KEEP:-}" ]; then
     echo "$command" > "$out/command.txt"
     mv "$out/chart.tmp" "$out/chart.txt"
 fi
-command=$(cat "$out/command.txt")
+# Files by their names alone: where they lie is nobody else's matter.
+command=$(sed 's|[^ ]*/\([^ /]*\.gl[a-z]*\)|\1|g' "$out/command.txt")
 
 # csv FILE PROGRAM: awk over a table of ours (no field has a comma in it):
 # $c["name"] is that column; lines of comments are skipped.

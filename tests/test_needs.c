@@ -135,6 +135,23 @@ static void cover_is_what_boxes_hide(void **state)
     in_limits((double)measure(&s)->cover, 1e-9, 1e-3);
 }
 
+/* A transform that is refused later is measured before that. */
+static void nonsense_is_measured_without_harm(void **state)
+{
+    static const float bad[] = { NAN, INFINITY, -INFINITY, 1e38f };
+    (void)state;
+    struct small s;
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
+        for (int k = 0; k < 16; k++) {
+            make(&s);
+            s.item[0].surface = k & 1;
+            s.item[1].world[k] = bad[i];
+            s.item[0].world[k] = bad[i];
+            double cover = (double)measure(&s)->cover;
+            assert_true(cover >= 0 && cover <= 1);
+        }
+}
+
 /* Blended objects have all their lights in one draw. */
 static void pairs_are_of_what_is_opaque(void **state)
 {
@@ -317,6 +334,7 @@ int main(void)
         cmocka_unit_test(counts_are_the_frames),
         cmocka_unit_test(choices_are_left_alone),
         cmocka_unit_test(cover_is_what_boxes_hide),
+        cmocka_unit_test(nonsense_is_measured_without_harm),
         cmocka_unit_test(pairs_are_of_what_is_opaque),
         cmocka_unit_test(kinds_of_light_are_collected),
         cmocka_unit_test(lights_an_object_are_those_that_touch_it),

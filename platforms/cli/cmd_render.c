@@ -6,6 +6,7 @@
 #include <string.h>
 #include "platforms/cli/commands.h"
 #include "platforms/cli/plan_text.h"
+#include "platforms/cli/probe.h"
 #include "platforms/cli/render.h"
 #include "platforms/host/util.h"
 
@@ -132,6 +133,7 @@ int hlc_cmd_render(const struct hlc_options *o)
     if (!r)
         return hlc_fail(HLC_BAD, "out of memory");
     r->o = o;
+    r->probe = hlc_probe_wanted(o) ? hlc_probe_measure : NULL;
     int code = HLC_DONE;
     if (!check_outputs(o, &error) ||
         !hlc_scene_open(&r->stage.scene, o, &error))

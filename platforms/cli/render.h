@@ -23,6 +23,9 @@ struct hlc_inside {
 
 struct hlc_render {
     const struct hlc_options *o;
+    /* Before planning, for a budget (probe.h); NULL: none. */
+    int (*probe)(struct hl_probe *, struct hlc_stage *,
+                 const struct hlc_options *);
     struct hlc_stage stage;      /* the reference: its scene alone           */
     struct hlh_picture picture;
     struct hlc_inside inside;

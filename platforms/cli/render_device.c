@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include "platforms/cli/commands.h"
-#include "platforms/cli/probe.h"
 #include "platforms/cli/render.h"
 
 static int refused(const struct hlc_render *r, const char *what,
@@ -28,8 +27,8 @@ static int open_all(struct hlc_render *r)
     if (code != HLC_DONE)
         return code;
     struct hl_probe probe = { 0 };
-    if (hlc_probe_wanted(r->o))
-        code = hlc_probe_measure(&probe, &r->stage, r->o);
+    if (r->probe)
+        code = r->probe(&probe, &r->stage, r->o);
     if (code != HLC_DONE)
         return refused(r, "probe", HL_ERR_DEVICE_LOST);
     code = hlc_shot_open(&r->shot, &r->stage, r->o, NULL, &probe, line);
