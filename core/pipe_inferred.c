@@ -283,7 +283,8 @@ static double dark_cost(const struct hl_ask *ask)
     const struct hl_cost_model *c = &ask->caps->cost;
     return ask->n.n_objects * (double)c->draw_ns +
            ask->n.n_triangles * (double)c->vertex_ns +
-           hl_plan_overdraw(ask) * hl_plan_shaded_pixels(ask) * (double)c->pixel_ns;
+           hl_plan_overdraw(ask) * hl_plan_shaded_pixels(ask) *
+           (double)c->pixel_ns;
 }
 
 static enum hl_refusal plan_dark(struct hl_plan *p, const struct hl_ask *lit)

@@ -19,7 +19,8 @@
 #define AT(member) offsetof(struct hlc_options, member)
 
 static const struct hlc_option rows[] = {
-    { "backend", "vulkan|gl|packemu|null", BACKEND, R | P | D | F | T | K, 0, 0, 0,
+    { "backend", "vulkan|gl|packemu|null", BACKEND, R | P | D | F | T | K, 0,
+      0, 0,
       "default: the first that has a device; stability: packemu" },
     { "device", "N|NAME", TEXT, R | P | F | T | K, AT(device), 0, 0,
       "index or part of a name, see 'halflight devices'" },

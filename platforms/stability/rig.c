@@ -140,3 +140,36 @@ bool hls_rig_picture(struct hlh_picture *out, struct hlc_shot *shot)
         r = hlc_shot_read(shot, out);
     return r == HL_OK || hls_rig_fail("drawing", r);
 }
+
+void hls_rig_close(struct hls_lab *lab)
+{
+    struct hls_drawn *d = lab->data;
+    if (d && d->made)
+        hlc_shot_close(&d->shot);
+    free(lab->data);
+    lab->data = NULL;
+}
+
+uint32_t hls_rig_glass(struct hls_rig *r, int i, double alpha)
+{
+    uint32_t m = hlh_build_material(&r->b, "pane", hlh_hue(i / 7.0, 0.6, 0.9),
+                                    1, 0);
+    struct hlh_material *pane = hlh_build_last_material(&r->b);
+    pane->base_color[3] = (float)alpha;
+    pane->alpha = HLH_ALPHA_BLEND;
+    return m;
+}
+
+void hls_rig_pane(struct hls_rig *r, uint32_t material, int i, double half,
+                  double z)
+{
+    hls_rig_lean(r, material, half, z, 0.6 * (i % 3 - 1),
+                 0.6 * (i / 3 % 3 - 1));
+}
+
+void hls_rig_lights(struct hls_rig *r)
+{
+    hlh_build_light(&r->b, hlh_v3(0.2, 0.3, 0.6), 1.8, hlh_v3(1, 0.9, 0.8));
+    hlh_build_light(&r->b, hlh_v3(-0.4, -0.2, 0.8), 1.6,
+                    hlh_v3(0.5, 0.7, 1));
+}

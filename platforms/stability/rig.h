@@ -36,6 +36,23 @@ bool hls_rig_end(struct hls_rig *, struct hls_lab *,
 void hls_rig_options(struct hlc_options *, const struct hls_lab *,
                      uint32_t w, uint32_t h);
 
+/* What a row with one shot has in lab->data, as its first member. */
+struct hls_drawn {
+    struct hlc_shot shot;
+    bool made;                   /* the shot is open                         */
+};
+/* Close it and free lab->data (may be NULL): a row's close. */
+void hls_rig_close(struct hls_lab *);
+
+/* Material of pane i of any number, alpha blended. */
+uint32_t hls_rig_glass(struct hls_rig *, int i, double alpha);
+/* Pane i over a wall: its normal leans by i, so that light that got to another
+ * layer shows. */
+void hls_rig_pane(struct hls_rig *, uint32_t material, int i, double half,
+                  double z);
+/* Two lights of unlike colours before a wall at z 0. */
+void hls_rig_lights(struct hls_rig *);
+
 /* As hlc_shot_open, with a printed line. */
 bool hls_rig_shot(struct hlc_shot *, struct hls_lab *,
                   const struct hlc_options *);

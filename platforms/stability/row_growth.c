@@ -144,6 +144,6 @@ static const struct hls_case cases[] = {
 const struct hls_row hls_row_growth = {
     "growth", "Thousands of lights cost more than their number",
     "conformance c; 52 (Kircher, Lawrance 2009, section 6)", "lights",
-    "lights", "error of the exponent e of work ~ lights^e, %, or bytes",
+    "lights", "work ~ lights^e: error of e, %",
     HLS_WHOLE, cases, sizeof cases / sizeof *cases, begin, end, measure
 };

@@ -31,18 +31,9 @@ static void build(struct hls_rig *rig, int panes, double half)
     hls_rig_begin(rig, 1, 60);
     hls_rig_wall(rig, 0, 3, 0);
     for (int i = 0; i < panes; i++) {
-        uint32_t m = hlh_build_material(&rig->b, "pane",
-                                        hlh_hue(i / 7.0, 0.6, 0.9), 1, 0);
-        struct hlh_material *pane = hlh_build_last_material(&rig->b);
-        pane->base_color[3] = 0.3f;
-        pane->alpha = HLH_ALPHA_BLEND;
-        /* Light that got to another layer shows. */
-        hls_rig_lean(rig, m, half, 0.005 * (i + 1), 0.6 * (i % 3 - 1),
-                     0.6 * (i / 3 % 3 - 1));
+        hls_rig_pane(rig, hls_rig_glass(rig, i, 0.3), i, half, 0.005 * (i + 1));
     }
-    hlh_build_light(&rig->b, hlh_v3(0.2, 0.3, 0.6), 1.8, hlh_v3(1, 0.9, 0.8));
-    hlh_build_light(&rig->b, hlh_v3(-0.4, -0.2, 0.8), 1.6,
-                    hlh_v3(0.5, 0.7, 1));
+    hls_rig_lights(rig);
 }
 
 /* arg: texels a side of a block, enum asked, enum hl_stipple_mode. */

@@ -11,9 +11,8 @@
 enum { SIDE = 32 };
 
 struct own {
+    struct hls_drawn drawn;      /* first, for hls_rig_close                 */
     struct hlc_options o;
-    struct hlc_shot shot;
-    bool made;
 };
 
 /* A wall under a light that every path draws, and one to be changed. */
@@ -40,20 +39,11 @@ static bool begin(struct hls_lab *lab, const struct hls_case *c,
     }
     if (!hls_rig_end(&rig, lab, &w->o))
         return false;
-    w->made = hlc_shot_open(&w->shot, &lab->stage, &w->o, NULL, NULL,
-                            line) == HLC_DONE;
-    if (!w->made)
+    w->drawn.made = hlc_shot_open(&w->drawn.shot, &lab->stage, &w->o, NULL,
+                                  NULL, line) == HLC_DONE;
+    if (!w->drawn.made)
         *skip = "the light path cannot be had on this machine";
     return true;
-}
-
-static void end(struct hls_lab *lab)
-{
-    struct own *w = lab->data;
-    if (w && w->made)
-        hlc_shot_close(&w->shot);
-    free(w);
-    lab->data = NULL;
 }
 
 /* ---- outcomes ----------------------------------------------------------- */
@@ -67,12 +57,12 @@ static enum outcome outcome_of(struct own *w, const struct hl_light *light,
 {
     struct hlh_picture picture;
     enum outcome out = DARK;
-    w->shot.frame.lights = light;
-    w->shot.frame.n_lights = 1;
-    enum hl_result r = hlc_shot_draw(&w->shot, NULL);
+    w->drawn.shot.frame.lights = light;
+    w->drawn.shot.frame.n_lights = 1;
+    enum hl_result r = hlc_shot_draw(&w->drawn.shot, NULL);
     if (r != HL_OK)
         return r == HL_ERR_INVALID ? REFUSED : WRONG;
-    if (hlc_shot_read(&w->shot, &picture) != HL_OK)
+    if (hlc_shot_read(&w->drawn.shot, &picture) != HL_OK)
         return WRONG;
     for (uint32_t i = 0; i < SIDE * SIDE; i++) {
         double scale = 2 * 0.57735026918962576 / SIDE;
@@ -180,6 +170,6 @@ static const struct hls_case cases[] = {
 const struct hls_row hls_row_lights = {
     "lights", "A light without radius or colour, or that is no number, shows",
     "(Kircher, Lawrance 2009, section 2.2; 38)", "radius", "m",
-    "wrong outcomes", HLS_LOG, cases, sizeof cases / sizeof *cases, begin, end,
-    measure
+    "wrong outcomes", HLS_LOG, cases, sizeof cases / sizeof *cases, begin,
+    hls_rig_close, measure
 };

@@ -14,9 +14,8 @@ enum { SIDE = 32, CELLS = 4, FACES = CELLS * CELLS };
 #define DEGREES 57.295779513082320877
 
 struct own {
+    struct hls_drawn drawn;      /* first, for hls_rig_close                 */
     struct hlc_options o;
-    struct hlc_shot shot;
-    bool made;
 };
 
 /* ---- the scene ---------------------------------------------------------- */
@@ -119,15 +118,6 @@ static double worst(const struct hlc_texels *t, uint32_t two16, double theta)
 
 /* ---- the row ------------------------------------------------------------ */
 
-static void end(struct hls_lab *lab)
-{
-    struct own *w = lab->data;
-    if (w && w->made)
-        hlc_shot_close(&w->shot);
-    free(w);
-    lab->data = NULL;
-}
-
 /* arg: format of the normals. */
 static bool begin(struct hls_lab *lab, const struct hls_case *c,
                   const char **skip)
@@ -141,9 +131,9 @@ static bool begin(struct hls_lab *lab, const struct hls_case *c,
     build(&rig, c->from);
     if (!hls_rig_end(&rig, lab, &w->o))
         return false;
-    w->made = hlc_shot_open(&w->shot, &lab->stage, &w->o, NULL, NULL,
-                            NULL) == HLC_DONE;
-    if (!w->made)
+    w->drawn.made = hlc_shot_open(&w->drawn.shot, &lab->stage, &w->o, NULL,
+                                  NULL, NULL) == HLC_DONE;
+    if (!w->drawn.made)
         *skip = "the normals' format cannot be had on this machine";
     return true;
 }
@@ -156,11 +146,11 @@ static bool measure(double *m, double p, const struct hls_case *c,
     struct hlc_texels t;
     (void)c;
     build(&rig, p);
-    if (!hls_rig_swap(&w->shot, &rig, &w->o) ||
-        !hls_rig_texels(&t, &w->shot, HL_ROLE_NORMAL))
+    if (!hls_rig_swap(&w->drawn.shot, &rig, &w->o) ||
+        !hls_rig_texels(&t, &w->drawn.shot, HL_ROLE_NORMAL))
         return false;
-    *m = worst(&t, w->shot.plan.two16, p) /
-         bound(component(&w->shot.plan), p);
+    *m = worst(&t, w->drawn.shot.plan.two16, p) /
+         bound(component(&w->drawn.shot.plan), p);
     hlc_texels_free(&t);
     return true;
 }
@@ -182,5 +172,5 @@ const struct hls_row hls_row_normals = {
     "normals", "A normal that turns away from the view axis is stored coarsely",
     "conformance b1; 60 (Kircher, Lawrance 2009, eq. 1)",
     "angle from the view axis", "degrees", "error of its bound", HLS_LINEAR,
-    cases, sizeof cases / sizeof *cases, begin, end, measure
+    cases, sizeof cases / sizeof *cases, begin, hls_rig_close, measure
 };

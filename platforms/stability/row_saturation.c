@@ -19,9 +19,8 @@ enum asked {
 };
 
 struct own {
+    struct hls_drawn drawn;      /* first, for hls_rig_close                 */
     struct hlc_options o;
-    struct hlc_shot shot;
-    bool made;
     struct hl_light light[MOST];
 };
 
@@ -65,11 +64,11 @@ static double truth(const struct own *w, uint32_t n, uint32_t i)
  * whatever the lights are. */
 static int make(struct own *w, struct hls_lab *lab, const struct hls_case *c)
 {
-    struct hlc_shot *shot = &w->shot;
+    struct hlc_shot *shot = &w->drawn.shot;
     float range = (float)c->arg[1];
-    if (w->made)
+    if (w->drawn.made)
         hlc_shot_close(shot);
-    w->made = false;
+    w->drawn.made = false;
     memset(shot, 0, sizeof *shot);
     shot->stage = &lab->stage;
     int code = hlc_plan_try(&shot->frame, &shot->needs, &shot->plan,
@@ -84,7 +83,7 @@ static int make(struct own *w, struct hls_lab *lab, const struct hls_case *c)
         shot->plan.light_out = 1 / range;
     }
     code = hlc_shot_make(shot, NULL);
-    w->made = code == HLC_DONE;
+    w->drawn.made = code == HLC_DONE;
     return code;
 }
 
@@ -125,20 +124,11 @@ static bool begin(struct hls_lab *lab, const struct hls_case *c,
     return true;
 }
 
-static void end(struct hls_lab *lab)
-{
-    struct own *w = lab->data;
-    if (w && w->made)
-        hlc_shot_close(&w->shot);
-    free(w);
-    lab->data = NULL;
-}
-
 /* A hundredth more than there is room for is cut; less may be a step. */
 static double count(const struct own *w, const struct hlc_texels *t,
                     const struct hls_case *c, double p)
 {
-    double most = (double)w->shot.plan.light_scale;
+    double most = (double)w->drawn.shot.plan.light_scale;
     uint32_t n = 0;
     float v[4];
     for (uint32_t i = 0; i < SIDE * SIDE; i++) {
@@ -147,9 +137,9 @@ static double count(const struct own *w, const struct hlc_texels *t,
             n += v[0] == 0;
         else
             n += v[0] >= 1 &&
-                 p * truth(w, w->shot.frame.n_lights, i) > 1.01 * most;
+                 p * truth(w, w->drawn.shot.frame.n_lights, i) > 1.01 * most;
     }
-    bool told = w->shot.stats.light_may_clip;
+    bool told = w->drawn.shot.stats.light_may_clip;
     if (told && c->arg[2] == (double)UNTOLD)
         return 0;
     /* An alarm where the plan was made for these very lights is false. */
@@ -170,7 +160,7 @@ static bool measure(double *m, double p, const struct hls_case *c,
     int code = c->arg[1] > 0 ? HLC_DONE : make(w, lab, c);
     if (code != HLC_DONE)
         return hls_rig_fail("saturation: plan", HL_ERR_UNSUPPORTED);
-    if (!hls_rig_texels(&t, &w->shot, HL_ROLE_LIGHT))
+    if (!hls_rig_texels(&t, &w->drawn.shot, HL_ROLE_LIGHT))
         return false;
     *m = count(w, &t, c, p);
     hlc_texels_free(&t);
@@ -215,5 +205,5 @@ const struct hls_row hls_row_saturation = {
     "saturation", "Light is cut at an L-buffer's range or lost below its step",
     "conformance b3; 25 (Engel 2009, section 8.5)", "light's colour", "",
     "texels cut, or empty, %", HLS_LOG, cases, sizeof cases / sizeof *cases,
-    begin, end, measure
+    begin, hls_rig_close, measure
 };

@@ -227,6 +227,6 @@ static const struct hls_case cases[] = {
 const struct hls_row hls_row_sizes = {
     "sizes", "Odd and extreme sizes read or write beside the picture",
     "conformance c", "width (heights 1 to 67)", "pixels",
-    "error beyond a texel's neighbourhood, of what formats round", HLS_WHOLE,
+    "error over what is allowed", HLS_WHOLE,
     cases, sizeof cases / sizeof *cases, begin, end, measure
 };

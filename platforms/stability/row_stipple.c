@@ -30,20 +30,11 @@ static void build(struct hls_rig *rig, struct own *w, bool crowd)
     hls_rig_begin(rig, 1, 90);
     hls_rig_wall(rig, 0, 3, 0);
     for (int i = 0; i < n; i++) {
-        uint32_t m = hlh_build_material(&rig->b, "pane",
-                                        hlh_hue(i / 4.0, 0.7, 0.9), 1, 0);
-        struct hlh_material *pane = hlh_build_last_material(&rig->b);
-        pane->base_color[3] = 0.4f;
-        pane->alpha = HLH_ALPHA_BLEND;
-        /* Light that got to another pane shows. */
-        hls_rig_lean(rig, m, crowd ? HALF : 2.5, 0, 0.6 * (i % 3 - 1),
-                     0.6 * (i / 3 % 3 - 1));
+        hls_rig_pane(rig, hls_rig_glass(rig, i, 0.4), i, crowd ? HALF : 2.5, 0);
         for (int k = 0; k < 6; k++)
             w->path[i][k] = (float)hlh_random(&rig->b, -0.7, 0.7);
     }
-    hlh_build_light(&rig->b, hlh_v3(0.2, 0.3, 0.6), 1.8, hlh_v3(1, 0.9, 0.8));
-    hlh_build_light(&rig->b, hlh_v3(-0.4, -0.2, 0.8), 1.6,
-                    hlh_v3(0.5, 0.7, 1));
+    hls_rig_lights(rig);
 }
 
 /* arg: enum asked, enum hl_stipple_mode, panes. */

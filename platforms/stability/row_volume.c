@@ -18,8 +18,7 @@ enum { W = 96, H = 64 };
 static const double eye_at[2] = { 0.11, 0.07 };
 
 struct own {
-    struct hlc_shot shot;
-    bool made;
+    struct hls_drawn drawn;      /* first, for hls_rig_close                 */
 };
 
 /* A corridor along z around a light of radius 1 at the origin, whose sphere
@@ -41,17 +40,9 @@ static bool begin(struct hls_lab *lab, const struct hls_case *c,
     hlh_add_box(&rig.b, hlh_v3(0, 0, 0), hlh_v3(WIDE, WIDE, LONG), 1, true);
     hls_rig_object(&rig, 0);
     hlh_build_light(&rig.b, hlh_v3(0, 0, 0), 1, hlh_v3(1, 1, 1));
-    w->made = hls_rig_end(&rig, lab, &o) && hls_rig_shot(&w->shot, lab, &o);
-    return w->made;
-}
-
-static void end(struct hls_lab *lab)
-{
-    struct own *w = lab->data;
-    if (w && w->made)
-        hlc_shot_close(&w->shot);
-    free(w);
-    lab->data = NULL;
+    w->drawn.made = hls_rig_end(&rig, lab, &o) &&
+                    hls_rig_shot(&w->drawn.shot, lab, &o);
+    return w->drawn.made;
 }
 
 /* ---- what is right ------------------------------------------------------ */
@@ -109,18 +100,18 @@ static bool count(double *m, double z, double near, double far,
     struct hlc_texels t;
     float v[4], eye[3] = { (float)eye_at[0], (float)eye_at[1], (float)z };
     float target[3] = { eye[0], eye[1], eye[2] - 1 };
-    hl_camera_look_at(&w->shot.frame.camera, eye, target, 73.739795291688043f,
-                      (float)near, (float)far);
-    if (!hls_rig_texels(&t, &w->shot, HL_ROLE_LIGHT))
+    hl_camera_look_at(&w->drawn.shot.frame.camera, eye, target,
+                      73.739795291688043f, (float)near, (float)far);
+    if (!hls_rig_texels(&t, &w->drawn.shot, HL_ROLE_LIGHT))
         return false;
     *m = 0;
     for (uint32_t i = 0; i < W * H; i++) {
         hlc_texel(v, &t, i);
-        *m += is_wrong((double)v[1] * (double)w->shot.plan.light_scale, z,
-                       &w->shot.frame.camera, i);
+        *m += is_wrong((double)v[1] * (double)w->drawn.shot.plan.light_scale, z,
+                       &w->drawn.shot.frame.camera, i);
     }
     hlc_texels_free(&t);
-    if (w->shot.stats.light_volumes)
+    if (w->drawn.shot.stats.light_volumes)
         snprintf(lab->note, sizeof lab->note, "through stencil volumes");
     return true;
 }
@@ -145,7 +136,7 @@ const struct hls_row hls_row_volume = {
     "volume", "A light goes out, or counts twice, around the eye",
     "34, 37 (Lengyel; Kircher, Lawrance 2009, section 2.2)",
     "camera from the centre", "radii", "wrong L texels", HLS_LINEAR, travels,
-    sizeof travels / sizeof *travels, begin, end, travel
+    sizeof travels / sizeof *travels, begin, hls_rig_close, travel
 };
 
 /* arg: the eye's z, the plane: 0 near, 1 far. */
@@ -170,5 +161,5 @@ const struct hls_row hls_row_near = {
     "near", "A light volume that the near or far plane cuts goes out",
     "34, 35 (Lengyel; Kircher, Lawrance 2009, section 2.2)",
     "distance of the plane", "radii", "wrong L texels", HLS_LOG, cuts,
-    sizeof cuts / sizeof *cuts, begin, end, cut
+    sizeof cuts / sizeof *cuts, begin, hls_rig_close, cut
 };
