@@ -79,6 +79,8 @@ static double path_cost(const struct hl_plan *p, const struct hl_ask *ask,
     double depth = tile_depth ? pixels * (double)c->readback_ns +
                                 (double)c->sync_ns : 0.0;
     double listed = lights * list_share(tile_depth);
+    /* Whose depth is known, texels without a surface have empty lists. */
+    double lit = tile_depth ? pixels * (double)ask->n.cover : pixels;
     if (p->light_path == HL_LIGHT_PATH_VOLUMES)
         return volumes_cost(p, ask, &u);
     if (p->light_path == HL_LIGHT_PATH_RECTS) {
@@ -91,12 +93,12 @@ static double path_cost(const struct hl_plan *p, const struct hl_ask *ask,
     }
     if (p->light_path == HL_LIGHT_PATH_TILES) {
         double draws = ceil((listed + 1) / HL_TILE_DRAW_LIGHTS);
-        return pixels * floor_of(&u, draws) + depth +
-               tiles * draws * (double)c->draw_ns +
-               pixels * (listed + 2) * light_ns(ask);
+        return lit * floor_of(&u, draws) + depth +
+               tiles * lit / pixels * draws * (double)c->draw_ns +
+               lit * (listed + 2) * light_ns(ask);
     }
     return pixels * floor_of(&u, 1) + depth +
-           pixels * listed * (double)c->light_gather_ns;
+           lit * listed * (double)c->light_gather_ns;
 }
 
 double hl_plan_light_path(struct hl_plan *p, const struct hl_ask *ask)

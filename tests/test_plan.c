@@ -321,6 +321,7 @@ static struct hl_needs raised(struct hl_needs n, int what)
     case 3: n.lights_per_pixel += 0.6f * (a - n.lights_per_pixel); break;
     case 4: n.lights_per_object += 0.6f * (a - n.lights_per_object); break;
     case 5: n.width += 100; break;
+    case 6: n.cover += 0.6f * (1 - n.cover); break;
     default: n.height += 64; break;
     }
     return n;
@@ -343,15 +344,36 @@ static void more_is_never_cheaper(void **state)
         n.lights_per_pixel = (float)ck_between(&seed, 0.001, n.n_lights);
         n.lights_per_object = (float)ck_between(&seed, 0.001, n.n_lights);
         n.light_path = (enum hl_light_path)mk_below(&seed, 5);
-        struct hl_needs more = raised(n, (int)(i % 7));
+        n.cover = (float)ck_between(&seed, 0.01, 1);
+        struct hl_needs more = raised(n, (int)(i % 8));
         enum hl_pipeline want = (enum hl_pipeline)mk_below(&seed,
                                                            HL_PIPELINE_COUNT);
         assert_int_equal(hl_plan_make(&p, want, &n, &c, NULL), HL_OK);
         assert_int_equal(hl_plan_make(&q, want, &more, &c, NULL), HL_OK);
         if (!(q.cost_ms >= p.cost_ms * 0.999999f))
-            fail_msg("raising %u: %g ms, before %g ms", i % 7,
+            fail_msg("raising %u: %g ms, before %g ms", i % 8,
                      (double)q.cost_ms, (double)p.cost_ms);
     }
+}
+
+/* Lists that know depth leave out where nothing is; rectangles do not. */
+static void empty_screens_are_not_lit(void **state)
+{
+    (void)state;
+    struct hl_needs n = usual();
+    struct hl_caps c;
+    struct hl_plan p;
+    ck_lavapipe(&c);
+    n.n_lights = 8;
+    n.lights_per_pixel = 2;
+    assert_int_equal(hl_plan_make(&p, HL_PIPELINE_INFERRED, &n, &c, NULL),
+                     HL_OK);
+    assert_int_equal(p.light_path, HL_LIGHT_PATH_RECTS);
+    n.cover = 0.1f;
+    assert_int_equal(hl_plan_make(&p, HL_PIPELINE_INFERRED, &n, &c, NULL),
+                     HL_OK);
+    assert_int_equal(p.light_path, HL_LIGHT_PATH_TILES);
+    assert_true(p.tile_depth);
 }
 
 static void auto_is_the_cheapest(void **state)
@@ -802,6 +824,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(anything_gives_a_plan_or_a_refusal),
         cmocka_unit_test(more_is_never_cheaper),
+        cmocka_unit_test(empty_screens_are_not_lit),
         cmocka_unit_test(auto_is_the_cheapest),
         cmocka_unit_test(each_bad_need_is_named),
         cmocka_unit_test(small_machines_have_no_maps),

@@ -69,13 +69,20 @@ void hlt_spot_baseline(struct hlt_spot *s, const struct hlt_way *w)
                                                  NULL, NULL, NULL) == HLC_DONE;
 }
 
-/* Once a machine and scene, and only where a budget asks. */
-static int probe(struct hlt_spot *s, const struct hlc_options *o)
+/* Once a machine and scene. */
+static int probe(struct hlt_spot *s)
 {
-    if (s->probed || !o->has_max_error)
+    if (s->probed)
         return HLC_DONE;
     s->probed = true;
     return hlc_probe_measure(&s->probe, &s->stage, &s->o);
+}
+
+/* What it says holds for as many samples as it was drawn with. */
+static const struct hl_probe *probe_for(const struct hlt_spot *s,
+                                        const struct hlc_options *o)
+{
+    return o->samples == s->o.samples ? &s->probe : NULL;
 }
 
 /* Packemu itself, or one beside that draws what was planned for another. */
@@ -157,8 +164,7 @@ static enum hl_result count(struct hlt_row *row, struct hlt_spot *s,
         return r;
     }
     if (!stage || hlc_shot_open(&other, stage, o, &s->stage.machine.caps,
-                                o->has_max_error ? &s->probe : NULL, NULL) !=
-                  HLC_DONE)
+                                probe_for(s, o), NULL) != HLC_DONE)
         return HL_OK;
     r = hlt_count(&c, &other);
     if (r == HL_OK)
@@ -283,13 +289,12 @@ int hlt_point_plan(struct hl_plan *plan, struct hlt_spot *s,
     struct hl_frame frame;
     struct hl_needs needs;
     way_options(&o, s, w);
-    int code = probe(s, &o);
+    int code = probe(s);
     if (code != HLC_DONE)
         return code;
     return hlc_plan_try(&frame, &needs, plan, &s->stage.world,
-                        &s->stage.machine.caps, &o,
-                        o.has_max_error ? &s->probe : NULL, line) == HLC_DONE
-           ? HLC_DONE : HLT_REFUSED;
+                        &s->stage.machine.caps, &o, probe_for(s, &o),
+                        line) == HLC_DONE ? HLC_DONE : HLT_REFUSED;
 }
 
 static bool same_targets(const struct hl_plan *a, const struct hl_plan *b)
@@ -335,11 +340,11 @@ int hlt_point(struct hlt_row *row, struct hlt_spot *s, const struct hlt_way *w,
     const char *why = NULL;
     hlt_point_none(row, s, w);
     way_options(&o, s, w);
-    int code = probe(s, &o);
+    int code = probe(s);
     if (code != HLC_DONE)
         return code;
-    if (hlc_shot_open(&shot, &s->stage, &o, NULL,
-                      o.has_max_error ? &s->probe : NULL, line) != HLC_DONE)
+    if (hlc_shot_open(&shot, &s->stage, &o, NULL, probe_for(s, &o), line) !=
+        HLC_DONE)
         return HLT_REFUSED;
     describe(row, &shot.plan);
     enum hl_result r = measure(row, s, &shot, &o, &why);
