@@ -47,8 +47,10 @@ int hlc_machine_open(struct hlc_machine *m, const struct hlc_options *o)
     d.log_user = m;
     m->backend = &hl_backend_packemu;
     enum hl_result r = hl_device_open(&m->device, m->backend, &d);
-    if (r == HL_OK)
+    if (r == HL_OK) {
+        m->caps = *hl_device_caps(m->device);
         return HLC_DONE;
+    }
     return hlc_fail(HLC_NO_DEVICE, "device: %s",
                     m->complaint[0] ? m->complaint : hl_result_name(r));
 }
