@@ -45,7 +45,7 @@ done
     END {
         for (i = 1; i <= n; i++) {
             k = name[i]
-            printf "| %s | %s | %s | %s | %s | %s |\n", k, what[k], at[k, 1], file > 1 ? at[k, 2] : "-", range[k], theory[k]
+            printf "| %s | %s | %s | %s | %s | %s |\n", k, what[k], at[k, 1], (file > 1 ? at[k, 2] : "-"), range[k], theory[k]
         }
     }' $backends
     echo

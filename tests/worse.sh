@@ -22,8 +22,8 @@ mkdir -p "$tree/b" "$tree/build"
 # Times are kept, so that only what a fault touches is compiled anew.
 git ls-files -co --exclude-standard -z | tar -c --null -T - --ignore-failed-read 2>/dev/null | tar -x -C "$tree"
 cp -Rp "$build/obj" "$tree/b/"
-find "$tree/b" -name '*.d' -exec sed -i "s|$build/obj/|b/obj/|" {} +
 [ -n "${GEN:-}" ] || GEN=build/gen
+find "$tree/b" -name '*.d' -exec sed -i -e "s|$build/obj/|b/obj/|" -e "s|$GEN/|gen/|g" {} +
 cp -Rp "$GEN" "$tree/gen"
 
 # inject FAULT: prints the files that it is in.
