@@ -5,13 +5,11 @@
  * One file a pipeline, the same function shapes in each. */
 #include "core/plan.h"
 
-/* Needs with every default filled in. */
 /* Fragments a pixel that a pass shades whose draws are sorted front to back
  * and by surface: 0.90 to 1.05 in the built-in scenes, counted. */
 #define HL_OVERDRAW 1.05
-/* The same over all pixels, those of the background too. */
-#define hl_plan_overdraw(ask) (HL_OVERDRAW * (double)(ask)->n.cover)
 
+/* Needs with every default filled in. */
 struct hl_ask {
     struct hl_needs n;
     const struct hl_caps *caps;
@@ -19,6 +17,12 @@ struct hl_ask {
     uint32_t fit_width, fit_height; /* L-buffer that EDRAM holds; 0: not
                                     * known to be needed                     */
 };
+
+/* HL_OVERDRAW over all pixels, those of the background too. */
+static inline double hl_plan_overdraw(const struct hl_ask *ask)
+{
+    return HL_OVERDRAW * (double)ask->n.cover;
+}
 
 enum hl_refusal hl_plan_forward(struct hl_plan *, const struct hl_ask *);
 enum hl_refusal hl_plan_multipass(struct hl_plan *, const struct hl_ask *);

@@ -14,6 +14,7 @@
 #include <string.h>
 #include "platforms/chart/count.h"
 #include "platforms/cli/commands.h"
+#include "platforms/cli/render.h"
 #include "platforms/stability/rig.h"
 
 enum { SIZES = 6, LEAST = 8, MOST = LEAST << (SIZES - 1), PIPES = 3,
@@ -122,14 +123,6 @@ static bool count(struct table *t, struct hlc_stage *stage, int i, int k)
     return true;
 }
 
-static int by_size(const void *a, const void *b)
-{
-    double x, y;
-    memcpy(&x, a, sizeof x);
-    memcpy(&y, b, sizeof y);
-    return (x > y) - (x < y);
-}
-
 /* Rounds of one frame of each, in turn; the first is not counted. */
 static bool time_all(struct table *t, struct hlc_stage *stage, int i, int k,
                      const char *backend, int rounds)
@@ -145,9 +138,8 @@ static bool time_all(struct table *t, struct hlc_stage *stage, int i, int k,
         for (int p = 0; ok && p < PIPES; p++)
             ok = hlc_shot_draw(&shot[p], &ms[p][r < 0 ? 0 : r]) == HL_OK;
     for (int p = 0; p < made; p++) {
-        qsort(ms[p], (size_t)rounds, sizeof(double), by_size);
-        t->at[TIME][p][i][k] = (struct spread){
-            ms[p][rounds / 2], ms[p][rounds / 4], ms[p][rounds * 3 / 4] };
+        struct hlc_quartiles q = hlc_quartiles_of(ms[p], (uint32_t)rounds);
+        t->at[TIME][p][i][k] = (struct spread){ q.median, q.low, q.high };
         hlc_shot_close(&shot[p]);
     }
     return ok;

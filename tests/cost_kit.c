@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "platforms/cli/commands.h"
+#include "platforms/cli/render.h"
 #include "tests/cost_kit.h"
 
 bool ct_open(struct ct_scene *s, const char *name, const char *backend,
@@ -53,14 +54,6 @@ bool ct_count(struct ct_cost *c, struct ct_scene *s, enum hl_pipeline pipeline,
 
 /* ---- times -------------------------------------------------------------- */
 
-static int by_size(const void *a, const void *b)
-{
-    double x, y;
-    memcpy(&x, a, sizeof x);
-    memcpy(&y, b, sizeof y);
-    return (x > y) - (x < y);
-}
-
 struct side {                    /* a pipeline that is timed                 */
     struct hlc_shot shot;
     bool open;
@@ -86,10 +79,8 @@ bool ct_time(struct ct_times out[HL_PIPELINE_COUNT], struct ct_scene *s,
     for (int p = 1; p < HL_PIPELINE_COUNT && side; p++) {
         if (side[p].open)
             hlc_shot_close(&side[p].shot);
-        qsort(side[p].ms, rounds, sizeof(double), by_size);
-        out[p] = (struct ct_times){ side[p].ms[rounds / 2],
-                                    side[p].ms[rounds / 4],
-                                    side[p].ms[rounds * 3 / 4] };
+        struct hlc_quartiles q = hlc_quartiles_of(side[p].ms, rounds);
+        out[p] = (struct ct_times){ q.median, q.low, q.high };
     }
     free(side);
     return ok;

@@ -174,9 +174,13 @@ static bool is_choice(const struct hlk_point *p, const struct hl_needs *needs)
                               needs->specular == HL_NEED_NO_SPECULAR);
 }
 
+/* Of the plans that were drawn: by the machine's own unit costs, not by those
+ * just measured, which may choose another light path with other blends. */
 static int predict(struct hlk_error *e, struct hlc_stage *stage,
                    const struct hlc_options *o, const struct hl_caps *caps)
 {
+    struct hl_caps drawn = stage->machine.caps;
+    drawn.error = caps->error;
     for (uint32_t i = 0; i < e->n; i++) {
         struct hlk_point *p = &e->point[i];
         struct hlc_options x = options_of(o, p->eighths, p->format);
@@ -184,7 +188,7 @@ static int predict(struct hlk_error *e, struct hlc_stage *stage,
         struct hl_needs needs;
         struct hl_plan plan;
         char line[HLC_PLAN_LINE];
-        if (hlc_plan_try(&frame, &needs, &plan, &stage->world, caps, &x,
+        if (hlc_plan_try(&frame, &needs, &plan, &stage->world, &drawn, &x,
                          &e->probe, line) != HLC_DONE)
             continue;
         p->predicted = (double)plan.error_codes;

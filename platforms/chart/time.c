@@ -2,17 +2,9 @@
 #include "platforms/chart/time.h"
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
+#include "platforms/cli/render.h"
 
 enum { WARM = 1 };
-
-static int by_size(const void *a, const void *b)
-{
-    double x, y;
-    memcpy(&x, a, sizeof x);
-    memcpy(&y, b, sizeof y);
-    return (x > y) - (x < y);
-}
 
 static enum hl_result one_round(double *ratio, struct hlc_shot *shot,
                                 struct hlc_shot *baseline, bool first)
@@ -36,9 +28,8 @@ enum hl_result hlt_time(struct hlt_ratio *out, struct hlc_shot *shot,
     for (uint32_t i = 0; i < rounds && r == HL_OK; i++)
         r = one_round(&ratio[i], shot, baseline, i % 2);
     if (r == HL_OK && rounds) {
-        qsort(ratio, rounds, sizeof *ratio, by_size);
-        *out = (struct hlt_ratio){ ratio[rounds / 2], ratio[rounds / 4],
-                                   ratio[rounds * 3 / 4] };
+        struct hlc_quartiles q = hlc_quartiles_of(ratio, rounds);
+        *out = (struct hlt_ratio){ q.median, q.low, q.high };
     }
     free(ratio);
     return r;

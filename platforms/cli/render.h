@@ -65,4 +65,7 @@ bool hlc_dump(struct hlc_render *r, struct hlc_outputs *files,
 double hlc_now_ms(void);         /* of a clock that only goes forward        */
 /* Sorts the values. n = 0 gives a spread of zeros. */
 struct hlc_spread hlc_spread_of(double *values, uint32_t n);
+/* Sorts n > 0 values: their median and quartiles, each one of them. */
+struct hlc_quartiles { double median, low, high; };
+struct hlc_quartiles hlc_quartiles_of(double *values, uint32_t n);
 #endif

@@ -17,6 +17,12 @@ static int by_value(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
+struct hlc_quartiles hlc_quartiles_of(double *v, uint32_t n)
+{
+    qsort(v, n, sizeof *v, by_value);
+    return (struct hlc_quartiles){ v[n / 2], v[n / 4], v[n * 3 / 4] };
+}
+
 struct hlc_spread hlc_spread_of(double *v, uint32_t n)
 {
     struct hlc_spread s = { 0, 0, 0, n };

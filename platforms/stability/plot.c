@@ -134,14 +134,21 @@ static void swept(struct hlh_buffer *b, const struct hls_result *r, uint32_t n)
         ticks(b, low, high);
 }
 
+/* Lines of the key, two names each, and the picture that leaves the curves
+ * their room: gnuplot lays a key over them where it has too little. */
+static unsigned key_lines(uint32_t n) { return (n + 1) / 2; }
+static unsigned height_of(uint32_t n) { return 320 + 20 * key_lines(n); }
+
 static void axes(struct hlh_buffer *b, const struct hls_result *r, uint32_t n)
 {
     char text[160];
     bool unit = r->row->unit[0] != 0;
     hlh_buffer_print(b, "set border 3\nset tics nomirror out\n"
                      "set key outside below left Left reverse noenhanced "
-                     "maxcols 2 height 1\nset grid lc rgb '#dddddd'\n"
-                     "set title ");
+                     "maxcols 2 maxrows %u samplen 2 width -4 height 1\n"
+                     "set bmargin %u\n"
+                     "set grid lc rgb '#dddddd'\nset title ",
+                     key_lines(n), key_lines(n) + 6);
     quote(b, r->row->failure);
     snprintf(text, sizeof text, unit ? "%s (%s)" : "%s", r->row->parameter,
              r->row->unit);
@@ -174,7 +181,8 @@ bool hls_plot(const char *folder, const struct hls_result *r, uint32_t n,
     curves(&b, r, n);
     hlh_buffer_add(&b, "", 1);
     bool ok = b.failed ? hlh_fail(error, path, "out of memory")
-                       : hlc_gnuplot(path, 640, 420, b.bytes, error);
+                       : hlc_gnuplot(path, 640, height_of(n), b.bytes,
+                                     error);
     hlh_buffer_free(&b);
     return ok;
 }

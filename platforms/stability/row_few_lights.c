@@ -120,6 +120,6 @@ static const struct hls_case cases[] = {
 const struct hls_row hls_row_few_lights = {
     "few_lights", "Inferred lighting where forward is cheaper",
     "conformance c (Kircher, Lawrance 2009, section 7.1)", "lights",
-    "lights", "counted cost of the planner's choice over the cheapest",
+    "lights", "cost of the choice over the cheapest",
     HLS_WHOLE, cases, sizeof cases / sizeof *cases, begin, end, measure
 };

@@ -366,6 +366,6 @@ static const struct hls_case cases[] = {
 const struct hls_row hls_row_inputs = {
     "inputs", "A number that is none reaches the picture or breaks the frame",
     "conformance section c; 60, 61", "index of the float", "",
-    "pixels not finite, undocumented results", HLS_WHOLE, cases,
+    "results that no document allows", HLS_WHOLE, cases,
     sizeof cases / sizeof *cases, begin, end, measure
 };

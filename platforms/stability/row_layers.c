@@ -30,9 +30,8 @@ static void build(struct hls_rig *rig, int panes, double half)
 {
     hls_rig_begin(rig, 1, 60);
     hls_rig_wall(rig, 0, 3, 0);
-    for (int i = 0; i < panes; i++) {
+    for (int i = 0; i < panes; i++)
         hls_rig_pane(rig, hls_rig_glass(rig, i, 0.3), i, half, 0.005 * (i + 1));
-    }
     hls_rig_lights(rig);
 }
 
